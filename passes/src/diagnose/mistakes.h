@@ -88,8 +88,7 @@ inline constexpr Mistake depth_format = of<kBySurfaces>(
     "says, such as 16 bits or half floats; give the depth buffer itself, with its own format.");
 inline constexpr Mistake depth_curved = of<kBySurfaces>(
     "planes are curved in the image of depth, as in a logarithmic or a linear depth, which no "
-    "matrix "
-    "gives; give a copy with the depth of the projection.");
+    "matrix gives; give a copy with the depth of the projection.");
 inline constexpr Mistake not_surfaces = of<kBySurfaces>(
     "depth does not look like surfaces: pixels repeat or are unrelated, as in another resource, a "
     "hi-Z level or a checkerboard; give depth as it was drawn, at the size at which it was drawn.");
