@@ -415,8 +415,9 @@ class Inspector {
 
   bool depth_changes() const {
     return share_of(frame_.samples, [&](const PixelSample& s) {
-             const PixelSample& before = pictures_[1].frame.samples[&s - frame_.samples.data()];
-             return std::abs(double{s.depth} - before.depth) > 4.0 * now_.depth_step(s.depth);
+             const auto i = static_cast<std::size_t>(&s - frame_.samples.data());
+             return std::abs(s.depth - double{pictures_[1].frame.samples[i].depth}) >
+                    4.0 * now_.depth_step(s.depth);
            }) > 0.02;
   }
 
