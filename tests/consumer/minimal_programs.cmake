@@ -5,7 +5,7 @@ foreach(program C CPP)
   file(MAKE_DIRECTORY ${FOLDER})
   execute_process(COMMAND ${CMAKE_COMMAND} -E env VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
     VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT
-    ${MINIMAL_${program}} ${picture}
+    ${EMULATOR} ${MINIMAL_${program}} ${picture}
     RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0 OR NOT output STREQUAL "")
     message(FATAL_ERROR "${MINIMAL_${program}} ended with ${status} and printed: ${output}")
