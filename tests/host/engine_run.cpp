@@ -240,6 +240,7 @@ void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
        }}};
   for (const auto& [which, depth_at] : kinds) {
     std::vector<float> texels;
+    texels.reserve(static_cast<std::size_t>(width * height));
     for (int i = 0; i < width * height; ++i) texels.push_back(depth_at(i % width, i / width));
     drawn.other[which] = create_filled(VK_FORMAT_R32_SFLOAT, size, texels);
   }

@@ -44,19 +44,19 @@ Scene foliage() {
 class Mistakes : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    gpu_ = open_validated();
-    ASSERT_TRUE(gpu_);
+    shared_gpu = open_validated();
+    ASSERT_TRUE(shared_gpu);
     EngineCourse resized = kQuick;
     resized.resize = true;
-    engine_ = std::make_unique<Engine>(*gpu_, builtin());
-    run_ = std::make_unique<MistakeRun>(*engine_, camera(), kQuick);
-    resized_ = std::make_unique<MistakeRun>(*engine_, camera(), resized);
+    shared_engine = std::make_unique<Engine>(*shared_gpu, builtin());
+    small_run = std::make_unique<MistakeRun>(*shared_engine, camera(), kQuick);
+    resized_run = std::make_unique<MistakeRun>(*shared_engine, camera(), resized);
   }
   static void TearDownTestSuite() {
-    run_.reset();
-    resized_.reset();
-    engine_.reset();
-    gpu_.reset();
+    small_run.reset();
+    resized_run.reset();
+    shared_engine.reset();
+    shared_gpu.reset();
   }
   static const Scene& builtin() {
     static const Scene scene = builtin_scene();
@@ -85,18 +85,22 @@ class Mistakes : public testing::Test {
     EXPECT_EQ(*said, "") << name << ", camera " << from.name;
   }
 
-  static inline ValidatedGpu gpu_;
-  static inline std::unique_ptr<Engine> engine_;
-  static inline std::unique_ptr<MistakeRun> run_;
-  static inline std::unique_ptr<MistakeRun> resized_;
+  static inline ValidatedGpu shared_gpu;
+  static inline std::unique_ptr<Engine> shared_engine;
+  static inline std::unique_ptr<MistakeRun> small_run;
+  static inline std::unique_ptr<MistakeRun> resized_run;
 };
 
-TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) { expect_each_named(*run_, 0); }
+TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
+  expect_each_named(*small_run, 0);
+}
 
-TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAmongRightFrames) { expect_each_named(*run_, 10); }
+TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAmongRightFrames) {
+  expect_each_named(*small_run, 10);
+}
 
 TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAfterAResize) {
-  expect_each_named(*resized_, kQuick.change_at + 1);
+  expect_each_named(*resized_run, kQuick.change_at + 1);
 }
 
 TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
@@ -105,7 +109,7 @@ TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
     auto scene = load_scene(name);
     ASSERT_TRUE(scene) << scene.error();
     for (std::size_t i = 1; i < scene->meshes.size(); i += 4) scene->meshes[i].moves = true;
-    Engine engine(*gpu_, *scene);
+    Engine engine(*shared_gpu, *scene);
     EngineCourse course = kQuick;
     course.frames = 16;  // no mistake is judged by more
     course.radius = scene->suggested_radius;
@@ -124,7 +128,7 @@ TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
 
 TEST_F(Mistakes, FoliageInSmallPicturesIsNotReported) {
   const Scene scene = foliage();
-  Engine engine(*gpu_, scene);
+  Engine engine(*shared_gpu, scene);
   for (const VkExtent2D size : {VkExtent2D{140, 79}, {160, 90}, {180, 101}, {200, 113}}) {
     EngineCourse course{.size = size, .radius = scene.suggested_radius};
     for (const float orbit : {0.0f, 0.01f, 0.05f}) {
@@ -140,7 +144,7 @@ TEST_F(Mistakes, SentenceLeavesWhenTheSizeNoLongerChanges) {
       &PlantedMistake::name);
   for (const std::uint32_t frames : {12u, 48u}) {
     const EngineCourse course{.size = kQuick.size, .frames = frames, .jitter = true};
-    auto run = EngineRun::create(*engine_, camera(), course);
+    auto run = EngineRun::create(*shared_engine, camera(), course);
     ASSERT_TRUE(run) << run.error();
     const auto said = (*run)->draw([&](EngineFrame& frame) {
       if (frame.frame.index < 10) changes.plant(frame);

@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-using nlohmann::literals::operator""_json;
+using nlohmann::literals::operator""_json;  // NOLINT(misc-unused-using-decls): used below
 using testing::HasSubstr;
 
 // A value that makes a file invalid if the member of its JSON at the pointer has it, and a part of
@@ -123,7 +123,7 @@ GltfMaker with_images(const std::vector<uint32_t>& sides) {
 
 TEST(GltfImage, LargestImagesAreHalvedUntilAllFitInMemory) {
   GltfLimits limits;
-  limits.images.kept = 3u * 32 * 32;
+  limits.images.kept = std::uint64_t{3} * 32 * 32;
   const Scene scene = parsed(with_images({128, 16, 64, 16}).gltf(), limits);
   std::vector<uint32_t> sides;
   for (const TextureImage& image : scene.images) sides.push_back(image.width);
@@ -134,7 +134,7 @@ TEST(GltfImage, LargestImagesAreHalvedUntilAllFitInMemory) {
 
 TEST(GltfImage, ImagesAfterThoseThatReachTheDecodingLimitAreLeftOut) {
   GltfLimits limits;
-  limits.images.decoded = 2u * 64 * 64;
+  limits.images.decoded = std::uint64_t{2} * 64 * 64;
   const Scene scene = parsed(with_images({64, 64, 64}).gltf(), limits);
   std::vector<int32_t> images;
   for (const Material& material : scene.materials)
