@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <utility>
 
@@ -84,11 +83,10 @@ std::optional<double> gtao_iterations(const OcclusionSettings& settings, Loops l
     return passes::needs_back_depth(settings) ? std::optional(kOccluderRuns) : std::nullopt;
   for (const std::size_t layers : {2, 1, 0}) {
     const Samples samples = samples_of(settings, layers);
-    const auto known = [&](std::size_t i) {
-      return loops[i].loads == 0 || sampling_iterations(samples, loops, i);
-    };
-    if (std::ranges::all_of(std::views::iota(std::size_t{0}, loops.size()), known))
-      return sampling_iterations(samples, loops, index);
+    bool all_known = true;
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      all_known = all_known && (loops[i].loads == 0 || sampling_iterations(samples, loops, i));
+    if (all_known) return sampling_iterations(samples, loops, index);
   }
   return std::nullopt;
 }
