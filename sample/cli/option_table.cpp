@@ -53,8 +53,9 @@ struct Reader {
   const char* type;  // of the value, in the help
   Read read;
 };
-template <typename Read>  // clang 14 deduces it by no other way
-Reader(const char*, Read)->Reader<Read>;
+// clang 14 does not deduce the arguments of an aggregate without a guide.
+template <typename Read>
+Reader(const char*, Read) -> Reader<Read>;
 
 // A number from `low` to `high`; the error is `wanted`.
 template <typename Number>

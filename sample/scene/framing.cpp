@@ -311,8 +311,8 @@ RadiusChoice ViewFinder::radius(const Camera& camera, double aspect) const {
   const bool backs = picture.backs > 2 * picture.surfaces;
   if (!inside && !below && !backs && picture.surfaces * kNearlyEmpty >= picture.pixels) return out;
   out.advice =
-      inside  ? "The view is from inside, because that shows more: draw back faces by "
-                "--both-sides, or "
+      inside  ? "The view is from inside, because that shows more; to see the outside, draw back "
+                "faces by --both-sides, or "
       : below ? "The view is from below, because back faces are not drawn: draw them by "
                 "--both-sides, or "
       : backs ? "The view shows back faces, which are not drawn: draw them by --both-sides, or "

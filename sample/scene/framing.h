@@ -28,8 +28,8 @@ struct RadiusChoice {
 // alone.
 class ViewFinder {
  public:
-  static constexpr const char* kFrame =
-      "";  // the name of framing_camera(): cameras of files have one
+  // The name of framing_camera(). Cameras of files have a name that is not empty.
+  static constexpr const char* kFrame = "";
 
   explicit ViewFinder(const Scene& scene);
 

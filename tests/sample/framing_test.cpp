@@ -223,9 +223,9 @@ TEST(FirstPicture, EyeIsInsideOfARoomWithoutAnOutside) {
                              scene_of({table, open}), scene_of({table, court})}) {
     const Camera camera = first_camera(scene);
     EXPECT_TRUE(contains(scene.bounds_ws, camera.eye_ws));
-    EXPECT_THAT(
-        ViewFinder(scene).radius(camera, kAspect).advice,
-        testing::HasSubstr("from inside, because that shows more: draw back faces by --both"));
+    EXPECT_THAT(ViewFinder(scene).radius(camera, kAspect).advice,
+                testing::HasSubstr(
+                    "from inside, because that shows more; to see the outside, draw back faces"));
   }
   // Slabs have an outside.
   const Scene crate = scene_of({joined(room, box({-3.2f, -0.2f, -4.2f}, {3.2f, 2.8f, 4.2f}))});

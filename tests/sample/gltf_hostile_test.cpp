@@ -11,7 +11,7 @@
 namespace alcove::sample {
 namespace {
 
-using nlohmann::literals::operator""_json;  // NOLINT(misc-unused-using-decls): used below
+using nlohmann::literals::operator""_json;  // NOLINT(misc-unused-using-decls)
 using testing::HasSubstr;
 
 // A value that makes a file invalid if the member of its JSON at the pointer has it, and a part of
