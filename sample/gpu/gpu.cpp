@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <glm/gtc/packing.hpp>
 #include <utility>
 
 namespace alcove::sample {
@@ -195,7 +194,5 @@ void add_read_back(Graph& graph, Texture texture, const HostBuffer& target, std:
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1, &copy);
   });
 }
-
-float half_to_float(std::uint16_t half) { return glm::unpackHalf1x16(half); }
 
 }  // namespace alcove::sample

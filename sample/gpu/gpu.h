@@ -72,6 +72,7 @@ class Gpu {
   [[nodiscard]] tl::expected<void, std::string> restart();
 
   const VulkanDevice& device() const { return *device_; }
+  const framegraph::DeviceHandles& handles() const { return handles_; }
   passes::Pipelines& pipelines() { return *pipelines_; }
   framegraph::Executor& executor() { return *executor_; }
 
@@ -119,8 +120,5 @@ framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
 // tightly packed, and makes it an output of the frame.
 void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const HostBuffer& target,
                    std::uint32_t mip = 0);
-
-// Converts an IEEE 754 half-precision float to a float.
-[[nodiscard]] float half_to_float(std::uint16_t half);
 
 }  // namespace alcove::sample

@@ -35,6 +35,17 @@ struct Features {
                                 .pNext = &v12};
 };
 
+std::uint32_t find_queue_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & kNeeded) == kNeeded) return i;
+  return UINT32_MAX;
+}
+
 std::string missing_features(VkPhysicalDevice device, std::uint32_t api_version) {
   if (api_version < VK_API_VERSION_1_3) return "Vulkan 1.3";
   Features has;
@@ -46,22 +57,12 @@ std::string missing_features(VkPhysicalDevice device, std::uint32_t api_version)
       {has.v12.hostQueryReset, "hostQueryReset"},
       {has.all.features.shaderStorageImageWriteWithoutFormat,
        "shaderStorageImageWriteWithoutFormat"},
+      {find_queue_family(device) != UINT32_MAX, "a queue for both graphics and compute"},
   };
   std::string missing;
   for (const auto& [present, name] : needed)
     if (!present) missing += (missing.empty() ? "" : ", ") + std::string(name);
   return missing;
-}
-
-std::uint32_t find_queue_family(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (std::uint32_t i = 0; i < count; ++i)
-    if ((families[i].queueFlags & kNeeded) == kNeeded) return i;
-  return UINT32_MAX;
 }
 
 std::string driver_name(VkPhysicalDevice device) {
@@ -76,16 +77,11 @@ std::string driver_name(VkPhysicalDevice device) {
 DeviceSummary summarise(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(device, &properties);
-  DeviceSummary summary{.name = properties.deviceName,
-                        .driver = driver_name(device),
-                        .api_version = properties.apiVersion,
-                        .type = properties.deviceType,
-                        .missing = missing_features(device, properties.apiVersion)};
-  if (find_queue_family(device) == UINT32_MAX) {
-    summary.missing += (summary.missing.empty() ? "" : ", ") +
-                       std::string("a queue for both graphics and compute");
-  }
-  return summary;
+  return {.name = properties.deviceName,
+          .driver = driver_name(device),
+          .api_version = properties.apiVersion,
+          .type = properties.deviceType,
+          .missing = missing_features(device, properties.apiVersion)};
 }
 
 std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
@@ -185,10 +181,12 @@ tl::expected<void, std::string> VulkanDevice::create_instance(const DeviceOption
     if (std::getenv("ALCOVE_LAYERS_OF_THE_HOST") == nullptr) layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
+  VkApplicationInfo application = kApplication;
+  if (options.vulkan12) application.apiVersion = VK_API_VERSION_1_2;
   const VkInstanceCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
       .pNext = options.validation ? &features : nullptr,
-      .pApplicationInfo = &kApplication,
+      .pApplicationInfo = &application,
       .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
       .ppEnabledLayerNames = layers.data(),
       .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
@@ -279,6 +277,13 @@ tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions&
   }
   std::vector<const char*> extensions;
   if (!options.surface_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  VkPhysicalDeviceSynchronization2Features synchronization2{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
+      .synchronization2 = VK_TRUE};
+  if (options.vulkan12) {
+    enabled.all.pNext = &synchronization2;
+    extensions.push_back(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+  }
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &enabled.all,
                                 .queueCreateInfoCount = 1,
@@ -296,12 +301,11 @@ tl::expected<void, std::string> VulkanDevice::create_device(const DeviceOptions&
 
 tl::expected<std::unique_ptr<VulkanDevice>, std::string> VulkanDevice::create(
     const DeviceOptions& options) {
-  std::unique_ptr<VulkanDevice> made(new VulkanDevice);
-  auto done = made->create_instance(options)
-                  .and_then([&] { return made->choose_physical_device(options.index); })
-                  .and_then([&] { return made->create_device(options); });
-  if (!done) return tl::unexpected(std::move(done.error()));
-  return made;
+  std::unique_ptr<VulkanDevice> device(new VulkanDevice);
+  return device->create_instance(options)
+      .and_then([&] { return device->choose_physical_device(options.index); })
+      .and_then([&] { return device->create_device(options); })
+      .map([&] { return std::move(device); });
 }
 
 VulkanDevice::~VulkanDevice() {

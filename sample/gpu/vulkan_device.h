@@ -20,6 +20,9 @@ struct DeviceOptions {
   // Whether Khronos validation with synchronisation validation is enabled, also across queue
   // submits. Creating the device fails if the layer is not installed.
   bool validation = false;
+  // Whether the device is that of an engine for Vulkan 1.2, with VK_KHR_synchronization2 and no
+  // other feature that 1.2 or 1.3 made core. The passes run on it, and the sample does not.
+  bool vulkan12 = false;
   // Instance extensions of the window system. If there are any, the swapchain extension is enabled
   // too.
   std::vector<const char*> surface_extensions;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <utility>
 
 namespace alcove::sample {
@@ -44,7 +45,7 @@ float read_channel(const std::byte* data, std::uint32_t bytes, bool is_signed) {
       return is_signed ? float(read<std::int8_t>(data)) / 127.0f
                        : float(read<std::uint8_t>(data)) / 255.0f;
     case 2:
-      return half_to_float(read<std::uint16_t>(data));
+      return glm::unpackHalf1x16(read<std::uint16_t>(data));
     default:
       return read<float>(data);
   }

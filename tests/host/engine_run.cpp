@@ -246,7 +246,7 @@ void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
   }
   std::array<std::vector<glm::vec4>, 3> normals;
   for (const auto& half : halves) {
-    const glm::vec3 normal(half_to_float(half[0]), half_to_float(half[1]), half_to_float(half[2]));
+    const glm::vec3 normal(glm::unpackHalf(glm::u16vec3(half[0], half[1], half[2])));
     const bool is_sky = glm::dot(normal, normal) < 0.25f;
     normals[0].emplace_back(is_sky ? glm::vec2(0.0f) : maths::octahedral_encode(normal), 0.0f,
                             0.0f);

@@ -36,7 +36,7 @@ TEST_F(BadInput, FrameInFlightSlotOutOfRangeIsReported) {
 
 TEST_F(BadInput, NumberOfFramesInFlightOutOfRangeIsReported) {
   for (const std::uint32_t frames : {0u, 9u, ~0u}) {
-    expect_error(Pipelines::create(handles(), frames),
+    expect_error(Pipelines::create(gpu().handles(), frames),
                  std::to_string(frames) + " frames in flight");
   }
 }

@@ -82,7 +82,8 @@ TEST_F(CFailure, VulkanFeaturesAndFunctionsThatTheDeviceLacksAreReported) {
               HasSubstr("5 storage images to a shader; the occlusion passes need 6."));
   storage_images = 10;
   replaced_functions["vkCmdPipelineBarrier2"] = nullptr;
-  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("vkCmdPipelineBarrier2"));
+  EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED),
+              AllOf(HasSubstr("vkCmdPipelineBarrier2"), HasSubstr("VK_KHR_synchronization2")));
   replaced_functions = {{"vkGetPhysicalDeviceQueueFamilyProperties2", nullptr}};
   EXPECT_THAT(error_of_context(info, ALCOVE_ERROR_UNSUPPORTED), HasSubstr("instance"));
 }

@@ -35,86 +35,59 @@ VkBufferImageCopy whole(const AlcoveImage& image) {
 
 }  // namespace
 
-TestEngine::TestEngine(const sample::VulkanDevice& device)
-    : TestEngine(EngineDevice{device.instance(), device.physical_device(), device.device(),
-                              device.queue(), device.queue_family()}) {}
-
-TestEngine::TestEngine(const EngineDevice& device) : device_(device) {
+TestEngine::TestEngine(const sample::VulkanDevice& device) : device_(device) {
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                     .queueFamilyIndex = device.queue_family};
-  EXPECT_EQ(vkCreateCommandPool(device.device, &pool, nullptr, &pool_), VK_SUCCESS);
+                                     .queueFamilyIndex = device.queue_family()};
+  EXPECT_EQ(vkCreateCommandPool(device.device(), &pool, nullptr, &pool_), VK_SUCCESS);
   for (Slot& slot : slots_) {
     const VkCommandBufferAllocateInfo commands{
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = pool_,
         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
         .commandBufferCount = 1};
-    EXPECT_EQ(vkAllocateCommandBuffers(device.device, &commands, &slot.commands), VK_SUCCESS);
+    EXPECT_EQ(vkAllocateCommandBuffers(device.device(), &commands, &slot.commands), VK_SUCCESS);
     const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
                                   .flags = VK_FENCE_CREATE_SIGNALED_BIT};
-    EXPECT_EQ(vkCreateFence(device.device, &fence, nullptr, &slot.fence), VK_SUCCESS);
+    EXPECT_EQ(vkCreateFence(device.device(), &fence, nullptr, &slot.fence), VK_SUCCESS);
   }
 }
 
 TestEngine::~TestEngine() {
   wait();
-  for (const Image& image : images_) destroy(image);
-  for (const Slot& slot : slots_) vkDestroyFence(device_.device, slot.fence, nullptr);
-  vkDestroyCommandPool(device_.device, pool_, nullptr);
+  for (const Slot& slot : slots_) vkDestroyFence(device_.device(), slot.fence, nullptr);
+  vkDestroyCommandPool(device_.device(), pool_, nullptr);
 }
 
 AlcoveContextInfo TestEngine::context_info() const {
   return {.struct_size = sizeof(AlcoveContextInfo),
-          .queue_family = device_.queue_family,
-          .instance = device_.instance,
-          .physical_device = device_.physical_device,
-          .device = device_.device,
+          .queue_family = device_.queue_family(),
+          .instance = device_.instance(),
+          .physical_device = device_.physical_device(),
+          .device = device_.device(),
           .get_instance_proc_addr = vkGetInstanceProcAddr,
           .frames_in_flight = kSlots,
           .timestamps = VK_TRUE};
 }
 
-VkDeviceMemory TestEngine::allocate(const VkMemoryRequirements& needs,
-                                    VkMemoryPropertyFlags flags) const {
-  VkPhysicalDeviceMemoryProperties properties;
-  vkGetPhysicalDeviceMemoryProperties(device_.physical_device, &properties);
-  const std::span types(properties.memoryTypes, properties.memoryTypeCount);
-  VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                            .allocationSize = needs.size};
-  while ((needs.memoryTypeBits >> info.memoryTypeIndex & 1u) == 0 ||
-         (types[info.memoryTypeIndex].propertyFlags & flags) != flags)
-    ++info.memoryTypeIndex;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  EXPECT_EQ(vkAllocateMemory(device_.device, &info, nullptr, &memory), VK_SUCCESS);
-  return memory;
-}
-
 AlcoveImage TestEngine::make_image(VkFormat format, std::uint32_t width, std::uint32_t height,
                                    VkImageUsageFlags usage, std::uint32_t layers,
                                    VkSampleCountFlagBits samples) {
-  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = VK_IMAGE_TYPE_2D,
-                               .format = format,
-                               .extent = {width, height, 1},
-                               .mipLevels = 1,
-                               .arrayLayers = layers,
-                               .samples = samples,
-                               .usage = usage};
-  Image made;
-  EXPECT_EQ(vkCreateImage(device_.device, &info, nullptr, &made.image), VK_SUCCESS);
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device_.device, made.image, &needs);
-  made.memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  EXPECT_EQ(vkBindImageMemory(device_.device, made.image, made.memory, 0), VK_SUCCESS);
-  images_.push_back(made);
-  const AlcoveImage image{.image = made.image,
+  auto object = sample::GpuImage::create(device_,
+                                         {.format = format,
+                                          .extent = framegraph::Extent::absolute(width, height),
+                                          .layers = layers,
+                                          .samples = samples},
+                                         usage);
+  EXPECT_TRUE(object) << object.error();
+  const AlcoveImage image{.image = (*object)->image(),
                           .format = format,
                           .width = width,
                           .height = height,
                           .usage = usage,
                           .initial_state = kResting,
                           .final_state = kResting};
+  images_.push_back(std::move(*object));
   submit(0, [&](VkCommandBuffer commands) {
     change_layout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, kResting.layout);
   });
@@ -149,92 +122,67 @@ AlcoveView TestEngine::make_view(const AlcoveSettings& settings, std::uint32_t w
   return view;
 }
 
-void TestEngine::destroy(const Image& image) const {
-  vkDestroyImage(device_.device, image.image, nullptr);
-  vkFreeMemory(device_.device, image.memory, nullptr);
-}
-
 void TestEngine::destroy_image(const AlcoveImage& image) {
-  std::erase_if(images_, [&](const Image& each) {
-    if (each.image == image.image) destroy(each);
-    return each.image == image.image;
-  });
+  std::erase_if(images_, [&](const auto& each) { return each->image() == image.image; });
 }
 
 void TestEngine::forget_images(AlcoveContext& context) const {
-  for (const Image& image : images_)
-    EXPECT_EQ(alcoveForgetImage(&context, image.image), ALCOVE_SUCCESS);
+  for (const auto& image : images_)
+    EXPECT_EQ(alcoveForgetImage(&context, image->image()), ALCOVE_SUCCESS);
 }
 
-TestEngine::Buffer TestEngine::create_buffer(VkBufferUsageFlags usage, VkDeviceSize size) const {
-  const VkBufferCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
-  Buffer made;
-  EXPECT_EQ(vkCreateBuffer(device_.device, &info, nullptr, &made.buffer), VK_SUCCESS);
-  VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device_.device, made.buffer, &needs);
-  made.memory =
-      allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-  EXPECT_EQ(vkBindBufferMemory(device_.device, made.buffer, made.memory, 0), VK_SUCCESS);
-  void* mapped = nullptr;
-  EXPECT_EQ(vkMapMemory(device_.device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped), VK_SUCCESS);
-  made.bytes = {static_cast<std::byte*>(mapped), size};
-  return made;
-}
-
-void TestEngine::destroy_buffer(const Buffer& buffer) const {
-  vkDestroyBuffer(device_.device, buffer.buffer, nullptr);
-  vkFreeMemory(device_.device, buffer.memory, nullptr);
+std::unique_ptr<sample::HostBuffer> TestEngine::create_buffer(VkBufferUsageFlags usage,
+                                                              VkDeviceSize size) const {
+  auto buffer = sample::HostBuffer::create(device_, size, usage);
+  EXPECT_TRUE(buffer) << buffer.error();
+  return std::move(*buffer);
 }
 
 void TestEngine::write(const AlcoveImage& image, std::span<const std::byte> texels,
                        const AlcoveState& final_state) {
-  const Buffer buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_SRC_BIT, texels.size());
-  std::ranges::copy(texels, buffer.bytes.begin());
+  const auto buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_SRC_BIT, texels.size());
+  std::ranges::copy(texels, buffer->bytes().begin());
   submit(0, [&](VkCommandBuffer commands) {
     constexpr VkImageLayout kFilled = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     const VkBufferImageCopy copy = whole(image);
     change_layout(commands, image, kResting.layout, kFilled);
-    vkCmdCopyBufferToImage(commands, buffer.buffer, image.image, kFilled, 1, &copy);
+    vkCmdCopyBufferToImage(commands, buffer->buffer(), image.image, kFilled, 1, &copy);
     change_layout(commands, image, kFilled, final_state.layout);
   });
   wait();
-  destroy_buffer(buffer);
 }
 
 Bytes TestEngine::read(const AlcoveImage& image, std::size_t texel_bytes) {
-  const Buffer buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                      std::size_t{image.width} * image.height * texel_bytes);
+  const auto buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                    std::size_t{image.width} * image.height * texel_bytes);
   submit(0, [&](VkCommandBuffer commands) {
     constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     const VkBufferImageCopy copy = whole(image);
     change_layout(commands, image, image.final_state.layout, kRead);
-    vkCmdCopyImageToBuffer(commands, image.image, kRead, buffer.buffer, 1, &copy);
+    vkCmdCopyImageToBuffer(commands, image.image, kRead, buffer->buffer(), 1, &copy);
     change_layout(commands, image, kRead, image.final_state.layout);
   });
   wait();
-  Bytes bytes(buffer.bytes.begin(), buffer.bytes.end());
-  destroy_buffer(buffer);
-  return bytes;
+  return {buffer->bytes().begin(), buffer->bytes().end()};
 }
 
 void TestEngine::record(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record) {
-  const Slot& used = slots_.at(slot);
-  EXPECT_EQ(vkWaitForFences(device_.device, 1, &used.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
+  const Slot& entry = slots_.at(slot);
+  EXPECT_EQ(vkWaitForFences(device_.device(), 1, &entry.fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  EXPECT_EQ(vkBeginCommandBuffer(used.commands, &begin), VK_SUCCESS);
-  record(used.commands);
-  EXPECT_EQ(vkEndCommandBuffer(used.commands), VK_SUCCESS);
+  EXPECT_EQ(vkBeginCommandBuffer(entry.commands, &begin), VK_SUCCESS);
+  record(entry.commands);
+  EXPECT_EQ(vkEndCommandBuffer(entry.commands), VK_SUCCESS);
 }
 
 void TestEngine::submit(std::uint32_t slot) {
-  const Slot& used = slots_.at(slot);
+  const Slot& entry = slots_.at(slot);
   const VkSubmitInfo submission{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                                 .commandBufferCount = 1,
-                                .pCommandBuffers = &used.commands};
-  EXPECT_EQ(vkResetFences(device_.device, 1, &used.fence), VK_SUCCESS);
-  EXPECT_EQ(vkQueueSubmit(device_.queue, 1, &submission, used.fence), VK_SUCCESS);
+                                .pCommandBuffers = &entry.commands};
+  EXPECT_EQ(vkResetFences(device_.device(), 1, &entry.fence), VK_SUCCESS);
+  EXPECT_EQ(vkQueueSubmit(device_.queue(), 1, &submission, entry.fence), VK_SUCCESS);
 }
 
 void TestEngine::submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& commands) {
@@ -242,7 +190,7 @@ void TestEngine::submit(std::uint32_t slot, const std::function<void(VkCommandBu
   submit(slot);
 }
 
-void TestEngine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue), VK_SUCCESS); }
+void TestEngine::wait() { EXPECT_EQ(vkQueueWaitIdle(device_.queue()), VK_SUCCESS); }
 
 AlcoveSettings get_settings(AlcoveQuality quality, float radius) {
   AlcoveSettings settings{.struct_size = sizeof settings};
@@ -267,9 +215,9 @@ Context create_context(const AlcoveContextInfo& info) {
 namespace {
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device, const char* name) {
-  const auto replaced = replaced_functions.find(std::string_view(name));
-  return replaced != replaced_functions.end() ? replaced->second
-                                              : vkGetDeviceProcAddr(device, name);
+  const auto replacement = replaced_functions.find(std::string_view(name));
+  return replacement != replaced_functions.end() ? replacement->second
+                                                 : vkGetDeviceProcAddr(device, name);
 }
 
 }  // namespace
@@ -277,9 +225,9 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device, co
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_replaced_function(VkInstance instance,
                                                                const char* name) {
   if (std::string_view(name) == "vkGetDeviceProcAddr") return untyped(&get_device_function);
-  const auto replaced = replaced_functions.find(std::string_view(name));
-  return replaced != replaced_functions.end() ? replaced->second
-                                              : vkGetInstanceProcAddr(instance, name);
+  const auto replacement = replaced_functions.find(std::string_view(name));
+  return replacement != replaced_functions.end() ? replacement->second
+                                                 : vkGetInstanceProcAddr(instance, name);
 }
 
 }  // namespace alcove::passes

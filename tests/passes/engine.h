@@ -14,20 +14,11 @@
 #include <vector>
 
 #include "alcove/alcove.h"
-#include "gpu/vulkan_device.h"
+#include "gpu/gpu.h"
 
 namespace alcove::passes {
 
 using Bytes = std::vector<std::byte>;
-
-// The device of an engine, which outlives it.
-struct EngineDevice {
-  VkInstance instance = VK_NULL_HANDLE;
-  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
-  VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;
-  std::uint32_t queue_family = 0;
-};
 
 // The state of an engine's images between frames: fragment shaders sample them.
 inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
@@ -38,13 +29,13 @@ class TestEngine {
  public:
   static constexpr std::uint32_t kSlots = 2;
 
-  explicit TestEngine(const EngineDevice& device);
+  // `device` must outlive the engine.
   explicit TestEngine(const sample::VulkanDevice& device);
   ~TestEngine();
   TestEngine(const TestEngine&) = delete;
   TestEngine& operator=(const TestEngine&) = delete;
 
-  const EngineDevice& device() const { return device_; }
+  const sample::VulkanDevice& device() const { return device_; }
   AlcoveContextInfo context_info() const;
 
   // Creates an image in the state kResting with undefined contents.
@@ -76,31 +67,19 @@ class TestEngine {
   void submit(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);
   void wait();
 
-  // A buffer in memory of the host.
-  struct Buffer {
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    std::span<std::byte> bytes;
-  };
-  Buffer create_buffer(VkBufferUsageFlags usage, VkDeviceSize size) const;
-  void destroy_buffer(const Buffer& buffer) const;
-  VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags flags) const;
+  std::unique_ptr<sample::HostBuffer> create_buffer(VkBufferUsageFlags usage,
+                                                    VkDeviceSize size) const;
 
  private:
   struct Slot {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
   };
-  struct Image {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-  };
-  void destroy(const Image& image) const;
 
-  EngineDevice device_;
+  const sample::VulkanDevice& device_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
   std::array<Slot, kSlots> slots_;
-  std::vector<Image> images_;
+  std::vector<std::unique_ptr<sample::GpuImage>> images_;
 };
 
 AlcoveSettings get_settings(AlcoveQuality quality, float radius);

@@ -63,8 +63,8 @@ framegraph::ImportedTexture import_of(const AlcoveImage& image) {
 class Example : public passes::CInterface {
  protected:
   std::unique_ptr<Engine> start() {
-    auto executor = framegraph::Executor::create(handles(), {.frames_in_flight = 2});
-    auto pipelines = passes::Pipelines::create(handles(), 2);
+    auto executor = framegraph::Executor::create(gpu().handles(), {.frames_in_flight = 2});
+    auto pipelines = passes::Pipelines::create(gpu().handles(), 2);
     if (!executor || !pipelines) return nullptr;
     return std::unique_ptr<Engine>(new Engine{
         .graph = {}, .pipelines = std::move(*pipelines), .executor = std::move(*executor)});

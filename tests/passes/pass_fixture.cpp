@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -59,7 +60,7 @@ HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_
     } else if (size == 2) {
       std::uint16_t half = 0;
       std::memcpy(&half, from, 2);
-      texel = sample::half_to_float(half);
+      texel = glm::unpackHalf1x16(half);
     } else if (format == VK_FORMAT_R8_UNORM) {
       texel = static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
     } else {
@@ -133,16 +134,6 @@ void PassTest::TearDown() {
 }
 
 sample::Gpu& PassTest::gpu() { return *shared.gpu; }
-
-framegraph::DeviceHandles PassTest::handles() {
-  framegraph::DeviceHandles handles;
-  handles.instance = gpu().device().instance();
-  handles.physical_device = gpu().device().physical_device();
-  handles.device = gpu().device().device();
-  handles.get_instance_proc_addr = vkGetInstanceProcAddr;
-  handles.queues[0] = {gpu().device().queue(), gpu().device().queue_family()};
-  return handles;
-}
 
 Texture PassTest::upload(Graph& graph, const HostImage& image, VkFormat format) {
   return fill(

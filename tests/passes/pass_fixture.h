@@ -166,7 +166,6 @@ class PassTest : public testing::Test {
   void poison_memory(std::uint32_t width, std::uint32_t height);
 
   static sample::Gpu& gpu();
-  static framegraph::DeviceHandles handles();
   // Replaces the device that tests share by another, for tests that count pipelines and tables.
   static void open_gpu();
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -24,7 +25,7 @@ class WorkExecutor {
  public:
   // With `own_shader`, every dispatch runs it instead of the library's shader.
   explicit WorkExecutor(const TestEngine& engine, AlcoveShader own_shader = {})
-      : engine_(engine), device_(engine.device().device), own_shader_(own_shader) {
+      : engine_(engine), device_(engine.device().device()), own_shader_(own_shader) {
     const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -118,15 +119,15 @@ class WorkExecutor {
                                  .arrayLayers = 1,
                                  .samples = VK_SAMPLE_COUNT_1_BIT,
                                  .usage = kUsages.at(history ? 3u : resource.usage)};
-    Image made{.owned = true};
-    check(vkCreateImage(device_, &info, nullptr, &made.image));
+    Image image{.owned = true};
+    check(vkCreateImage(device_, &info, nullptr, &image.image));
     if (history) {
-      VkMemoryRequirements needed{};
-      vkGetImageMemoryRequirements(device_, made.image, &needed);
-      made.memory = engine_.allocate(needed, 0);
-      check(vkBindImageMemory(device_, made.image, made.memory, 0));
+      VkMemoryRequirements needs{};
+      vkGetImageMemoryRequirements(device_, image.image, &needs);
+      check(engine_.device().allocate(needs, 0, image.memory));
+      check(vkBindImageMemory(device_, image.image, image.memory, 0));
     }
-    return made;
+    return image;
   }
 
   void create_images(const AlcoveWork& work, std::span<const VkImage> host) {
@@ -166,24 +167,23 @@ class WorkExecutor {
     for (std::size_t i = 0; i < images_.size(); ++i) {
       const AlcoveWorkResource& resource = work.resources[i];
       if (resource.kind != ALCOVE_RESOURCE_KIND_TRANSIENT) continue;
-      VkMemoryRequirements needed{};
-      vkGetImageMemoryRequirements(device_, images_[i].image, &needed);
-      Place place{0, needed.size, resource.first_dispatch, resource.last_dispatch,
-                  images_[i].image};
+      VkMemoryRequirements needs{};
+      vkGetImageMemoryRequirements(device_, images_[i].image, &needs);
+      Place place{0, needs.size, resource.first_dispatch, resource.last_dispatch, images_[i].image};
       const auto collides = [&](const Place& other) {
         return place.begin < other.end && other.begin < place.end && place.first <= other.last &&
                other.first <= place.last;
       };
       for (auto hit = places.begin();
            (hit = std::ranges::find_if(places, collides)) != places.end();) {
-        place.begin = (hit->end + needed.alignment - 1) / needed.alignment * needed.alignment;
-        place.end = place.begin + needed.size;
+        place.begin = (hit->end + needs.alignment - 1) / needs.alignment * needs.alignment;
+        place.end = place.begin + needs.size;
       }
       all.size = std::max(all.size, place.end);
-      all.memoryTypeBits &= needed.memoryTypeBits;
+      all.memoryTypeBits &= needs.memoryTypeBits;
       places.push_back(place);
     }
-    transients_ = places.empty() ? VK_NULL_HANDLE : engine_.allocate(all, 0);
+    if (!places.empty()) check(engine_.device().allocate(all, 0, transients_));
     for (const Place& place : places)
       check(vkBindImageMemory(device_, place.image, transients_, place.begin));
   }
@@ -192,9 +192,9 @@ class WorkExecutor {
     const std::size_t constant_bytes = dispatch.constant_count * sizeof dispatch.constants[0];
     std::string key(dispatch.shader);
     key.append(reinterpret_cast<const char*>(dispatch.constants), constant_bytes);
-    const auto [found, is_new] = pipelines_.try_emplace(key);
-    Pipeline& made = found->second;
-    if (!is_new) return made;
+    const auto [entry, is_new] = pipelines_.try_emplace(key);
+    Pipeline& pipeline = entry->second;
+    if (!is_new) return pipeline;
     std::array<VkDescriptorSetLayoutBinding, ALCOVE_MAX_WORK_BINDINGS> bindings;
     for (std::uint32_t i = 0; i < dispatch.binding_count; ++i) {
       const AlcoveWorkBinding& of = dispatch.bindings[i];
@@ -205,11 +205,11 @@ class WorkExecutor {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = dispatch.binding_count,
         .pBindings = bindings.data()};
-    check(vkCreateDescriptorSetLayout(device_, &set, nullptr, &made.set_layout));
+    check(vkCreateDescriptorSetLayout(device_, &set, nullptr, &pipeline.set_layout));
     const VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                             .setLayoutCount = 1,
-                                            .pSetLayouts = &made.set_layout};
-    check(vkCreatePipelineLayout(device_, &layout, nullptr, &made.layout));
+                                            .pSetLayouts = &pipeline.set_layout};
+    check(vkCreatePipelineLayout(device_, &layout, nullptr, &pipeline.layout));
     AlcoveShader shader = own_shader_;
     if (shader.code == nullptr) {
       EXPECT_EQ(alcoveGetShader(dispatch.shader, &shader), ALCOVE_SUCCESS);
@@ -235,10 +235,10 @@ class WorkExecutor {
                   .module = module,
                   .pName = "main",
                   .pSpecializationInfo = &constants},
-        .layout = made.layout};
-    check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &made.pipeline));
+        .layout = pipeline.layout};
+    check(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline.pipeline));
     vkDestroyShaderModule(device_, module, nullptr);
-    return made;
+    return pipeline;
   }
 
   // Changes the layout of an image. Other commands than those of the executor use the engine's
@@ -292,8 +292,8 @@ class WorkExecutor {
 
   VkBuffer create_buffer(VkBufferUsageFlags usage, const void* bytes, VkDeviceSize size) {
     buffers_.push_back(engine_.create_buffer(usage, size));
-    std::memcpy(buffers_.back().bytes.data(), bytes, size);
-    return buffers_.back().buffer;
+    std::memcpy(buffers_.back()->bytes().data(), bytes, size);
+    return buffers_.back()->buffer();
   }
 
   VkDescriptorSet create_set(const AlcoveWork& work, const AlcoveWorkDispatch& dispatch,
@@ -344,7 +344,6 @@ class WorkExecutor {
   }
   void destroy_frame() {
     std::ranges::for_each(images_, [&](const Image& image) { destroy(image); });
-    for (const TestEngine::Buffer& buffer : buffers_) engine_.destroy_buffer(buffer);
     vkFreeMemory(device_, std::exchange(transients_, VK_NULL_HANDLE), nullptr);
     check(vkResetDescriptorPool(device_, pool_, 0));
     images_.clear();
@@ -360,7 +359,7 @@ class WorkExecutor {
   std::map<std::string, Image> histories_;     // written in the last frame, by name
   // State of the current frame.
   std::vector<Image> images_;  // parallel to the resources
-  std::vector<TestEngine::Buffer> buffers_;
+  std::vector<std::unique_ptr<sample::HostBuffer>> buffers_;
   VkDeviceMemory transients_ = VK_NULL_HANDLE;
 };
 
