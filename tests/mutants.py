@@ -29,15 +29,15 @@ OPERATORS = [(" < ", " <= "), (" <= ", " < "), (" > ", " >= "), (" >= ", " > "),
 
 def mutations(line):
     """Returns every mutated form of a line of code."""
-    found = [line[:m.start()] + new + line[m.end():]
+    forms = [line[:m.start()] + new + line[m.end():]
              for old, new in OPERATORS for m in re.finditer(re.escape(old), line)]
     for m in re.finditer(r"(?<![\w.])(\d+)(\.\d+)?(?=[fu;,) \]])", line):
-        found.append(line[:m.start(1)] + str(int(m.group(1)) + 1) + line[m.end(1):])
+        forms.append(line[:m.start(1)] + str(int(m.group(1)) + 1) + line[m.end(1):])
     if m := re.match(r"(\s*(?:\} )?(?:else )?if \()(.*?)(\)(?: \{| return.*;)?\s*)$", line):
-        found += [m.group(1) + value + m.group(3) for value in ("true", "false")]
+        forms += [m.group(1) + value + m.group(3) for value in ("true", "false")]
     if re.match(r"\s+[\w.:>-]+\(.*\);\s*$", line) and "return" not in line:
-        found.append(re.match(r"\s*", line).group() + ";\n")
-    return found
+        forms.append(re.match(r"\s*", line).group() + ";\n")
+    return forms
 
 
 def candidates(folders):
@@ -79,17 +79,17 @@ def main():
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--build", default="build/mutants")
     options.add_argument("--folders", default=FOLDERS)
-    given = options.parse_args()
+    arguments = options.parse_args()
     if subprocess.run(["git", "diff", "--quiet", "HEAD"], cwd=ROOT).returncode != 0:
         sys.exit("mutants: the tree has uncommitted changes; commit them first")
-    build = str(ROOT / given.build)
+    build = str(ROOT / arguments.build)
     if run(["cmake", "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"], 300) != 0 or judge(build, "") != "SURVIVES":
-        sys.exit(f"mutants: {given.build} cannot be built, or its tests fail without a mutant")
-    every = candidates(given.folders.split(","))
-    random.Random(given.seed).shuffle(every)
+        sys.exit(f"mutants: {arguments.build} cannot be built, or its tests fail without a mutant")
+    every = candidates(arguments.folders.split(","))
+    random.Random(arguments.seed).shuffle(every)
     valid = killed = 0
     for path, number, text in every:
-        if valid == given.count:
+        if valid == arguments.count:
             break
         original = path.read_text()
         lines = original.splitlines(keepends=True)
@@ -103,7 +103,7 @@ def main():
             valid += 1
             killed += verdict != "SURVIVES"
             print(f"{verdict}: {path.relative_to(ROOT)}:{number + 1}: {was} -> {text.strip()}", flush=True)
-    print(f"{killed} of {valid} mutants killed (seed {given.seed})")
+    print(f"{killed} of {valid} mutants killed (seed {arguments.seed})")
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@
 // in the positive half-slice, and with -<n,d> in the negative one. It takes one square root and one
 // arc cosine.
 //
-// Visibility is the sum of slice_visibility() over slices, divided by the sum of open_slice(), or
-// by the number of slices if there are many. A visibility of 1 is unoccluded.
+// Visibility is the sum of light_arc() over both halves of all slices, divided by the sum of
+// open_slice(), or by the number of slices if there are many. A visibility of 1 is unoccluded.
 #ifndef ALCOVE_MATHS_GTAO_H
 #define ALCOVE_MATHS_GTAO_H
 
@@ -26,17 +26,6 @@ ALCOVE_MATHS_BEGIN
 ALCOVE_INLINE float light_arc(Slice s, float side, vec2 light) {
   float swell = arc_cosine(light.y) - light.x * light.y;
   return 0.5f * (light.x * light.x * s.toward + swell * (side * s.along));
-}
-
-// Returns light_arc() up to a horizon, which is given by its cosine as in horizon_light().
-ALCOVE_INLINE float slice_arc(Slice s, float side, float horizon) {
-  return light_arc(s, side, horizon_light(s, side, horizon));
-}
-
-// Returns the visible part of both half-slices, [0, open_slice(s)], at most 1.571. `ahead` is the
-// cosine of the horizon in the positive half-slice, `behind` of that in the negative one.
-ALCOVE_INLINE float slice_visibility(Slice s, float ahead, float behind) {
-  return max(slice_arc(s, 1.0f, ahead) + slice_arc(s, -1.0f, behind), 0.0f);
 }
 
 // Returns the visible part of a slice without occluders: length (cos gamma + gamma sin gamma). Its

@@ -120,11 +120,6 @@ ALCOVE_INLINE float lobe_light_arc(HalfLobe lobe, vec2 light) {
              lobe.whole);
 }
 
-// Returns lobe_light_arc() up to a horizon, which is given by its cosine as in horizon_light().
-ALCOVE_INLINE float lobe_arc(Slice s, HalfLobe lobe, float horizon) {
-  return lobe_light_arc(lobe, horizon_light(s, lobe.side, horizon));
-}
-
 // Returns the integral of the lobe over the visible directions of a half-slice: over the sectors
 // whose bit in `occluded` is not set. Visible sectors behind the first occluder count by the factor
 // 1 - `hidden_occlusion`. visible_part() in visibility_bitmask.h does the same with the cosine as

@@ -4,9 +4,9 @@
 foreach(archive IN LISTS ARCHIVES)
   execute_process(COMMAND ${NM} --extern-only ${archive} OUTPUT_VARIABLE symbols
     COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX MATCHALL "[A-Za-z] vk[A-Z][A-Za-z0-9]*" found "${symbols}")
-  if(found)
-    message(FATAL_ERROR "${archive} has global symbols of Vulkan's: ${found}")
+  string(REGEX MATCHALL "[A-Za-z] vk[A-Z][A-Za-z0-9]*" vulkan_symbols "${symbols}")
+  if(vulkan_symbols)
+    message(FATAL_ERROR "${archive} has global symbols of Vulkan's: ${vulkan_symbols}")
   endif()
   # An archive that was read wrongly has no symbols at all.
   if(NOT symbols MATCHES "alcove")

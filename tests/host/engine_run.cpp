@@ -135,16 +135,16 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   const std::uint32_t back = course_.stereo ? 2 : 1;
   const std::uint32_t previous = frame < back ? frame : frame - back;
   const CameraMatrices before = matrices_at(previous, true);
-  const GbufferView seen{.view_from_world = now.view_from_world,
-                         .clip_from_view = now.clip_from_view,
-                         .previous_view_from_world = before.view_from_world,
-                         .previous_clip_from_view = before.clip_from_view,
-                         .reversed_z = camera_.reversed_z,
-                         .world_from_moving = world_from_moving_at(frame),
-                         .previous_world_from_moving = world_from_moving_at(previous)};
+  const GbufferView gbuffer_view{.view_from_world = now.view_from_world,
+                                 .clip_from_view = now.clip_from_view,
+                                 .previous_view_from_world = before.view_from_world,
+                                 .previous_clip_from_view = before.clip_from_view,
+                                 .reversed_z = camera_.reversed_z,
+                                 .world_from_moving = world_from_moving_at(frame),
+                                 .previous_world_from_moving = world_from_moving_at(previous)};
   ALCOVE_TRY(GbufferRenderer * gbuffer, engine_.gbuffer(course_.geometric));
-  DrawnFrame drawn;
-  AlcoveView& view = drawn.view;
+  DrawnFrame targets;
+  AlcoveView& view = targets.view;
   struct Target {
     AlcoveImage& image;
     VkFormat format;
@@ -156,25 +156,27 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
         Target{view.images[ALCOVE_IMAGE_NORMALS], kNormalFormat, size, kColourUsage},
         Target{view.images[ALCOVE_IMAGE_MOTION], kMotionFormat, size, kColourUsage},
         Target{view.images[ALCOVE_IMAGE_VISIBILITY], kVisibilityFormat, size, kVisibilityUsage},
-        Target{drawn.other[Other::albedo], kAlbedoFormat, size, kColourUsage},
-        Target{
-            drawn.other.half_depth, kDepthFormat, {size.width / 2, size.height / 2}, kDepthUsage}})
+        Target{targets.other[Other::albedo], kAlbedoFormat, size, kColourUsage},
+        Target{targets.other.half_depth,
+               kDepthFormat,
+               {size.width / 2, size.height / 2},
+               kDepthUsage}})
     target.image =
         device_.make_image(target.format, target.size.width, target.size.height, target.usage);
   const auto report = gpu_.run([&](Graph& graph) -> Result<void> {
-    (void)gbuffer->add(graph, seen,
+    (void)gbuffer->add(graph, gbuffer_view,
                        {.depth = import(graph, view.images[ALCOVE_IMAGE_DEPTH]),
                         .normal = import(graph, view.images[ALCOVE_IMAGE_NORMALS]),
-                        .albedo = import(graph, drawn.other[Other::albedo]),
+                        .albedo = import(graph, targets.other[Other::albedo]),
                         .motion = import(graph, view.images[ALCOVE_IMAGE_MOTION])});
     if (course_.other_inputs)
-      (void)gbuffer->add(graph, seen, {.depth = import(graph, drawn.other.half_depth)});
+      (void)gbuffer->add(graph, gbuffer_view, {.depth = import(graph, targets.other.half_depth)});
     return {};
   });
   if (!report) return Failure(report.error());
-  if (course_.other_inputs) create_other_inputs(drawn, frame);
-  drawn.other.half_depth.width = size.width;
-  drawn.other.half_depth.height = size.height;
+  if (course_.other_inputs) create_other_inputs(targets, frame);
+  targets.other.half_depth.width = size.width;
+  targets.other.half_depth.height = size.height;
   view.struct_size = sizeof view;
   const glm::vec3 origin = course_.relative ? glm::vec3(now.world_from_view[3]) : glm::vec3(0.0f);
   view.info.camera = to_camera(now, origin);
@@ -183,16 +185,16 @@ Result<void> EngineRun::draw_frame(std::uint32_t frame) {
   const bool changes = (course_.cut || course_.resize) && frame == course_.change_at;
   view.info.reset_history = changes ? VK_TRUE : VK_FALSE;
   view.info.static_frames = course_.orbit != 0.0f || course_.jitter ? 0 : frame;
-  drawn.other.camera_without_jitter = to_camera(matrices_at(frame, false), origin);
-  frames_.push_back(drawn);
+  targets.other.camera_without_jitter = to_camera(matrices_at(frame, false), origin);
+  frames_.push_back(targets);
   return {};
 }
 
-void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
+void EngineRun::create_other_inputs(DrawnFrame& targets, std::uint32_t frame) {
   const VkExtent2D size = size_at(frame);
   const CameraMatrices now = matrices_at(frame, true);
-  const std::vector<float> depths = read<float>(drawn.view.images[ALCOVE_IMAGE_DEPTH]);
-  const auto halves = read<std::array<std::uint16_t, 4>>(drawn.view.images[ALCOVE_IMAGE_NORMALS]);
+  const std::vector<float> depths = read<float>(targets.view.images[ALCOVE_IMAGE_DEPTH]);
+  const auto halves = read<std::array<std::uint16_t, 4>>(targets.view.images[ALCOVE_IMAGE_NORMALS]);
   const int width = static_cast<int>(size.width), height = static_cast<int>(size.height);
   const auto at = [&](int x, int y) {
     return depths[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * size.width +
@@ -242,7 +244,7 @@ void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
     std::vector<float> texels;
     texels.reserve(static_cast<std::size_t>(width * height));
     for (int i = 0; i < width * height; ++i) texels.push_back(depth_at(i % width, i / width));
-    drawn.other[which] = create_filled(VK_FORMAT_R32_SFLOAT, size, texels);
+    targets.other[which] = create_filled(VK_FORMAT_R32_SFLOAT, size, texels);
   }
   std::array<std::vector<glm::vec4>, 3> normals;
   for (const auto& half : halves) {
@@ -254,13 +256,13 @@ void EngineRun::create_other_inputs(DrawnFrame& drawn, std::uint32_t frame) {
     normals[2].emplace_back(normal * glm::mat3(now.view_from_world), 0.0f);
   }
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    drawn.other.images.at(static_cast<std::size_t>(Other::octahedral_normals) + i) =
+    targets.other.images.at(static_cast<std::size_t>(Other::octahedral_normals) + i) =
         create_filled(VK_FORMAT_R32G32B32A32_SFLOAT, size, normals.at(i));
   }
 }
 
 EngineFrame EngineRun::describe(std::uint32_t frame) const {
-  const auto drawn = [&](std::uint32_t back) -> const DrawnFrame& {
+  const auto frame_before = [&](std::uint32_t back) -> const DrawnFrame& {
     return frames_.at(frame - std::min(frame, back));
   };
   EngineFrame result;
@@ -269,15 +271,15 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
   result.settings.slices = 1;  // few samples, as nobody looks at the visibility
   result.settings.steps = 2;
   result.back = course_.stereo ? 2 : 1;
-  result.view = drawn(0).view;
+  result.view = frame_before(0).view;
   result.view.info.id = 2 * next_id_ + (course_.stereo ? frame % 2 : 0);
-  result.right = result.view;
+  result.correct = result.view;
   result.view.images[ALCOVE_IMAGE_MOTION] = {};
-  result.other = drawn(0).other;
-  result.other_before = drawn(1).other;
-  result.right_before = drawn(1).view;
-  result.right_before_that = drawn(2).view;
-  result.right_first = frames_.front().view;
+  result.other = frame_before(0).other;
+  result.other_before = frame_before(1).other;
+  result.correct_before = frame_before(1).view;
+  result.correct_before_that = frame_before(2).view;
+  result.correct_first = frames_.front().view;
   result.frame.struct_size = sizeof result.frame;
   result.frame.index = frame;
   result.frame.slot = frame % passes::TestEngine::kSlots;
@@ -289,22 +291,22 @@ EngineFrame EngineRun::describe(std::uint32_t frame) const {
 Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t begin,
                                     bool submit_late) {
   AlcoveContext* const context = engine_.context();
-  std::string said;
+  std::string report;
   std::optional<std::uint32_t> waiting;  // the slot that is recorded and not submitted
   std::vector<std::uint32_t> ids;
-  for (std::uint32_t i = 0; said.empty() && i < course_.frames; ++i) {
-    EngineFrame described = describe(i);
+  for (std::uint32_t i = 0; report.empty() && i < course_.frames; ++i) {
+    EngineFrame engine_frame = describe(i);
     const bool late = submit_late && i >= begin;
-    if (late) described.frame.slot = 0;
-    if (change && i >= begin) change(described);
-    ids.push_back(described.view.info.id);
-    described.view.info.settings = &described.settings;
-    described.frame.views = &described.view;
+    if (late) engine_frame.frame.slot = 0;
+    if (change && i >= begin) change(engine_frame);
+    ids.push_back(engine_frame.view.info.id);
+    engine_frame.view.info.settings = &engine_frame.settings;
+    engine_frame.frame.views = &engine_frame.view;
     const std::uint32_t slot = i % passes::TestEngine::kSlots;
     device_.record(slot, [&](VkCommandBuffer commands) {
-      for (std::uint32_t record = 0; record < described.records; ++record)
-        if (alcoveRecordFrame(context, commands, &described.frame) != ALCOVE_SUCCESS)
-          said = std::string(alcoveGetMessage(context)) + "\n";
+      for (std::uint32_t record = 0; record < engine_frame.records; ++record)
+        if (alcoveRecordFrame(context, commands, &engine_frame.frame) != ALCOVE_SUCCESS)
+          report = std::string(alcoveGetMessage(context)) + "\n";
     });
     if (waiting) device_.submit(*waiting);
     waiting = slot;
@@ -313,10 +315,10 @@ Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t beg
   }
   if (waiting) device_.submit(*waiting);
   device_.wait();
-  if (said.empty()) {
-    said.resize(alcoveDiagnose(context, nullptr, 0) + 1);
-    alcoveDiagnose(context, said.data(), said.size());
-    said.pop_back();
+  if (report.empty()) {
+    report.resize(alcoveDiagnose(context, nullptr, 0) + 1);
+    alcoveDiagnose(context, report.data(), report.size());
+    report.pop_back();
   }
   ++next_id_;
   if (submit_late) {
@@ -325,7 +327,7 @@ Result<std::string> EngineRun::draw(const ChangeFrame& change, std::uint32_t beg
   } else {
     for (const std::uint32_t id : ids) alcoveDropView(context, id);
   }
-  return said;
+  return report;
 }
 
 }  // namespace alcove::sample

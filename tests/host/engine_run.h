@@ -37,7 +37,7 @@ struct EngineCourse {
   bool other_inputs = false;  // creates OtherInputs, which takes time
 };
 
-// Images that engines give by mistake instead of the right ones, all of the right size.
+// Images that engines give by mistake instead of the correct ones, all of the same size.
 enum class Other : std::uint8_t {
   linear_depth,
   linear_to_far_depth,  // from 0 to 1
@@ -78,10 +78,10 @@ struct EngineFrame {
   OtherInputs other;
   OtherInputs other_before;  // of the last frame
   // The views of this frame and of earlier ones without a mistake.
-  AlcoveView right{};
-  AlcoveView right_before{};
-  AlcoveView right_before_that{};
-  AlcoveView right_first{};
+  AlcoveView correct{};
+  AlcoveView correct_before{};
+  AlcoveView correct_before_that{};
+  AlcoveView correct_first{};
 };
 
 // Changes a frame before it is recorded.
@@ -148,7 +148,7 @@ class EngineRun {
   CameraMatrices matrices_at(std::uint32_t frame, bool with_jitter) const;
   glm::mat4 world_from_moving_at(std::uint32_t frame) const;
   Result<void> draw_frame(std::uint32_t frame);
-  void create_other_inputs(DrawnFrame& drawn, std::uint32_t frame);
+  void create_other_inputs(DrawnFrame& targets, std::uint32_t frame);
   EngineFrame describe(std::uint32_t frame) const;
 
   Engine& engine_;

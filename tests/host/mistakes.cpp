@@ -77,12 +77,12 @@ void invert(float* m) {
 }
 
 void multiply_by_view(AlcoveCamera& camera) {
-  const AlcoveCamera given = camera;
+  const AlcoveCamera original = camera;
   for (std::size_t i = 0; i < 16; ++i) {
     camera.clip_from_view[i] = 0.0f;
     for (std::size_t k = 0; k < 4; ++k) {
       camera.clip_from_view[i] +=
-          given.clip_from_view[4 * k + i % 4] * given.view_from_world[4 * (i / 4) + k];
+          original.clip_from_view[4 * k + i % 4] * original.view_from_world[4 * (i / 4) + k];
     }
   }
 }
@@ -139,20 +139,20 @@ void set_normals(F& frame, Other image, AlcoveNormalEncoding encoding, bool in_v
   frame.view.info.normals_in_view_space = in_view_space ? VK_TRUE : VK_FALSE;
 }
 
-// Gives motion vectors. With a scale of 1 they are right.
+// Gives motion vectors. With a scale of 1 they are correct.
 void set_motion(F& frame, const AlcoveImage& image, float x, float y) {
   frame.view.images[ALCOVE_IMAGE_MOTION] = image;
   frame.view.info.motion_scale[0] = x;
   frame.view.info.motion_scale[1] = y;
 }
 void scale_motion(F& frame, float x, float y) {
-  set_motion(frame, frame.right.images[ALCOVE_IMAGE_MOTION], x, y);
+  set_motion(frame, frame.correct.images[ALCOVE_IMAGE_MOTION], x, y);
 }
 
 // Gives the two eyes one id.
 void give_one_id(F& frame) {
   frame.view.info.id &= ~1u;
-  frame.view.info.previous_camera = frame.right_before.info.camera;
+  frame.view.info.previous_camera = frame.correct_before.info.camera;
 }
 
 void set_depth(F& frame, Other image) {
@@ -247,13 +247,13 @@ const std::vector<PlantedMistake>& planted_mistakes() {
        }},
       {"camera one frame late", "are not of the same frame",
        [](F& f) {
-         f.view.info.camera = f.right_before.info.camera;
-         f.view.info.previous_camera = f.right_before_that.info.camera;
+         f.view.info.camera = f.correct_before.info.camera;
+         f.view.info.previous_camera = f.correct_before_that.info.camera;
        }},
       {"depth and normals one frame late", "are not of the same frame",
        [](F& f) {
-         f.view.images[ALCOVE_IMAGE_DEPTH] = f.right_before.images[ALCOVE_IMAGE_DEPTH];
-         f.view.images[ALCOVE_IMAGE_NORMALS] = f.right_before.images[ALCOVE_IMAGE_NORMALS];
+         f.view.images[ALCOVE_IMAGE_DEPTH] = f.correct_before.images[ALCOVE_IMAGE_DEPTH];
+         f.view.images[ALCOVE_IMAGE_NORMALS] = f.correct_before.images[ALCOVE_IMAGE_NORMALS];
        }},
       // Jitter.
       {"jitter in neither camera", "clip_from_view lacks", with(scale_jitter, 0.0f, 0.0f)},
@@ -280,9 +280,9 @@ const std::vector<PlantedMistake>& planted_mistakes() {
       {"previous_camera is always this frame's", "previous_camera is this frame's camera",
        [](F& f) { f.view.info.previous_camera = f.view.info.camera; }},
       {"previous_camera is always the first frame's", "previous_camera is not the camera",
-       [](F& f) { f.view.info.previous_camera = f.right_first.info.camera; }},
+       [](F& f) { f.view.info.previous_camera = f.correct_first.info.camera; }},
       {"previous_camera is two frames old", "previous_camera is not the camera",
-       [](F& f) { f.view.info.previous_camera = f.right_before_that.info.camera; }},
+       [](F& f) { f.view.info.previous_camera = f.correct_before_that.info.camera; }},
       {"previous_camera is inverted", "previous_camera is not the camera",
        [](F& f) { invert(f.view.info.previous_camera.view_from_world); }},
       {"AlcoveFrame::index stands still", "AlcoveFrame::index is that of the last record",
@@ -400,12 +400,13 @@ const std::vector<PlantedMistake>& planted_mistakes() {
   return mistakes;
 }
 
-std::vector<RightCourse> right_courses(const EngineCourse& base) {
+std::vector<CorrectCourse> correct_courses(const EngineCourse& base) {
   EngineCourse jittered = base;
   jittered.jitter = true;
   EngineCourse orbiting = jittered;
   orbiting.orbit = 0.01f;
-  std::vector<RightCourse> courses{{"still", base}, {"jittered", jittered}, {"orbiting", orbiting}};
+  std::vector<CorrectCourse> courses{
+      {"still", base}, {"jittered", jittered}, {"orbiting", orbiting}};
   const auto add = [&](const char* name, bool EngineCourse::*member) {
     courses.push_back({name, orbiting});
     courses.back().course.*member = true;
@@ -423,7 +424,7 @@ std::vector<RightCourse> right_courses(const EngineCourse& base) {
   return courses;
 }
 
-Result<std::string> diagnose_right_frames(EngineRun& run) {
+Result<std::string> diagnose_correct_frames(EngineRun& run) {
   const ChangeFrame ways[] = {{},
                               [](F& f) { scale_motion(f, 1.0f, 1.0f); },
                               [](F& f) {  // as a host of VulkanSceneGraph does
@@ -434,12 +435,12 @@ Result<std::string> diagnose_right_frames(EngineRun& run) {
                                 change_size(f);
                                 f.view.info.static_frames = 0;
                               }};
-  std::string said;
+  std::string report;
   for (const ChangeFrame& way : ways) {
-    ALCOVE_TRY(const std::string drawn, run.draw(way));
-    said += drawn;
+    ALCOVE_TRY(const std::string lines, run.draw(way));
+    report += lines;
   }
-  return said;
+  return report;
 }
 
 Result<EngineRun*> MistakeRun::run_of(PlantedMistake::Frames frames) {
@@ -467,8 +468,9 @@ Result<std::string> MistakeRun::draw(const PlantedMistake& mistake, std::uint32_
   });
 }
 
-bool names(const std::string& said, const PlantedMistake& mistake) {
-  return std::ranges::count(said, '\n') == 1 && said.find(mistake.sentence) != std::string::npos;
+bool names(const std::string& report, const PlantedMistake& mistake) {
+  return std::ranges::count(report, '\n') == 1 &&
+         report.find(mistake.sentence) != std::string::npos;
 }
 
 }  // namespace alcove::sample

@@ -34,15 +34,15 @@ struct PlantedMistake {
 [[nodiscard]] const std::vector<PlantedMistake>& planted_mistakes();
 
 // Frames without a mistake: a camera that stands still, moves, has jitter, is resized or cut.
-struct RightCourse {
+struct CorrectCourse {
   const char* name;
   EngineCourse course;
 };
-[[nodiscard]] std::vector<RightCourse> right_courses(const EngineCourse& base);
+[[nodiscard]] std::vector<CorrectCourse> correct_courses(const EngineCourse& base);
 
 // Returns what alcoveDiagnose says of frames without a mistake: as they are, with motion vectors,
 // without normals, and with dynamic resolution. It should be nothing.
-[[nodiscard]] Result<std::string> diagnose_right_frames(EngineRun& run);
+[[nodiscard]] Result<std::string> diagnose_correct_frames(EngineRun& run);
 
 // Draws frames without and with mistakes, of a camera that moves and has jitter.
 class MistakeRun {
@@ -64,6 +64,6 @@ class MistakeRun {
 };
 
 // Returns whether `said` is one line, which contains the sentence of the mistake.
-[[nodiscard]] bool names(const std::string& said, const PlantedMistake& mistake);
+[[nodiscard]] bool names(const std::string& report, const PlantedMistake& mistake);
 
 }  // namespace alcove::sample

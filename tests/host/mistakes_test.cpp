@@ -1,6 +1,6 @@
-// Makes each usual mistake of integration from the first frame on, in the midst of frames that are
-// right, and after a resize. Each must be named by its own sentence alone. Frames without a mistake
-// must not be reported.
+// Makes each usual mistake of integration from the first frame on, among correct frames, and after
+// a resize. Each must be named by its own sentence alone. Frames without a mistake must not be
+// reported.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -69,10 +69,10 @@ class Mistakes : public testing::Test {
 
   static void expect_each_named(MistakeRun& run, std::uint32_t begin) {
     for (const PlantedMistake& mistake : planted_mistakes()) {
-      const auto said = run.draw(mistake, begin);
-      ASSERT_TRUE(said) << said.error();
-      EXPECT_TRUE(names(*said, mistake))
-          << mistake.name << ", from frame " << begin << ": " << *said;
+      const auto report = run.draw(mistake, begin);
+      ASSERT_TRUE(report) << report.error();
+      EXPECT_TRUE(names(*report, mistake))
+          << mistake.name << ", from frame " << begin << ": " << *report;
     }
   }
 
@@ -80,9 +80,9 @@ class Mistakes : public testing::Test {
                             const std::string& name) {
     const auto run = EngineRun::create(engine, from, course);
     ASSERT_TRUE(run) << run.error();
-    const auto said = diagnose_right_frames(**run);
-    ASSERT_TRUE(said) << said.error();
-    EXPECT_EQ(*said, "") << name << ", camera " << from.name;
+    const auto report = diagnose_correct_frames(**run);
+    ASSERT_TRUE(report) << report.error();
+    EXPECT_EQ(*report, "") << name << ", camera " << from.name;
   }
 
   static inline ValidatedGpu shared_gpu;
@@ -95,7 +95,7 @@ TEST_F(Mistakes, EachMistakeIsNamedIfItIsMadeFromTheFirstFrameOn) {
   expect_each_named(*small_run, 0);
 }
 
-TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAmongRightFrames) {
+TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAmongCorrectFrames) {
   expect_each_named(*small_run, 10);
 }
 
@@ -103,7 +103,7 @@ TEST_F(Mistakes, EachMistakeIsNamedIfItBeginsAfterAResize) {
   expect_each_named(*resized_run, kQuick.change_at + 1);
 }
 
-TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
+TEST_F(Mistakes, CorrectFramesOfEachSceneAreNotReported) {
   for (const char* name :
        {"builtin", "terrain", "plane:60", "groove:90", "corner", "sphere", "pit", "step"}) {
     auto scene = load_scene(name);
@@ -116,11 +116,11 @@ TEST_F(Mistakes, RightFramesOfEachSceneAreNotReported) {
     for (Camera& from : scene->cameras) {
       from.reversed_z = true;
       // One camera has all courses, and the others the first ones.
-      std::vector<RightCourse> courses = right_courses(course);
+      std::vector<CorrectCourse> courses = correct_courses(course);
       const bool first = std::string_view(name) == "builtin" && &from == scene->cameras.data();
       if (!first) courses.resize(3);
-      for (const RightCourse& right : courses) {
-        expect_silent(engine, from, right.course, std::string(name) + ", " + right.name);
+      for (const CorrectCourse& each : courses) {
+        expect_silent(engine, from, each.course, std::string(name) + ", " + each.name);
       }
     }
   }
@@ -146,12 +146,12 @@ TEST_F(Mistakes, SentenceLeavesWhenTheSizeNoLongerChanges) {
     const EngineCourse course{.size = kQuick.size, .frames = frames, .jitter = true};
     auto run = EngineRun::create(*shared_engine, camera(), course);
     ASSERT_TRUE(run) << run.error();
-    const auto said = (*run)->draw([&](EngineFrame& frame) {
+    const auto report = (*run)->draw([&](EngineFrame& frame) {
       if (frame.frame.index < 10) changes.plant(frame);
     });
-    ASSERT_TRUE(said) << said.error();
-    EXPECT_EQ(names(*said, changes), frames == 12) << *said;
-    EXPECT_EQ(said->empty(), frames == 48) << *said;
+    ASSERT_TRUE(report) << report.error();
+    EXPECT_EQ(names(*report, changes), frames == 12) << *report;
+    EXPECT_EQ(report->empty(), frames == 48) << *report;
   }
 }
 

@@ -113,7 +113,7 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeS
     const vec3 wall =
         maths::slice_direction(maths::make_view_basis(view), random.uniform(0.0f, 6.28f));
     const float height = random.uniform(0.0f, 3.0f);
-    const auto found = [&](const std::vector<float>& angles, bool subtract_expected) {
+    const auto bent_normal_over = [&](const std::vector<float>& angles, bool subtract_expected) {
       vec3 residual(0), expected_residual(0);
       float visible = 0.0f, open = 0.0f;
       for (const float phi : angles) {
@@ -125,11 +125,11 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeS
         const float ahead = toward > 0.0f ? horizon : -1.0f;
         const float behind = toward > 0.0f ? -1.0f : horizon;
         const vec3 part = maths::slice_bent_normal(s, direction, view, ahead, behind);
-        const float seen = maths::slice_visibility(s, ahead, behind);
+        const float visible_part = slice_visibility(s, ahead, behind);
         const float all = maths::open_slice(s);
-        visible += seen;
+        visible += visible_part;
         open += all;
-        residual += maths::residual_of(part, seen, normal);
+        residual += maths::residual_of(part, visible_part, normal);
         expected_residual += maths::expected_residual(s, direction, view, normal, all);
       }
       const vec3 sum = subtract_expected
@@ -137,11 +137,11 @@ TEST(BentNormal, SubtractingTheExpectedResidualReducesTheBentNormalErrorOfThreeS
                            : residual;
       return maths::finish_bent_normal(sum, visible, normal);
     };
-    const vec3 truth = found(even_angles(256), false);
+    const vec3 truth = bent_normal_over(even_angles(256), false);
     const std::vector<float> few{random.uniform(0.0f, float(kPi)), random.uniform(0.0f, float(kPi)),
                                  random.uniform(0.0f, float(kPi))};
-    const vec3 raw_apart = found(few, false) - truth;
-    const vec3 corrected_apart = found(few, true) - truth;
+    const vec3 raw_apart = bent_normal_over(few, false) - truth;
+    const vec3 corrected_apart = bent_normal_over(few, true) - truth;
     raw += double(dot(raw_apart, raw_apart));
     corrected += double(dot(corrected_apart, corrected_apart));
   }

@@ -107,8 +107,8 @@ TEST(Ggx, ImportanceSamplesWeightedByTheirDensityReproduceTheIntegralOfTheLobe) 
       double sampled = 0.0, sampled_x = 0.0, squares = 0.0;
       constexpr int kSamples = 100000;
       for (int i = 0; i < kSamples; ++i) {
-        const glm::vec2 drawn{random.uniform(0, 1), random.uniform(0, 1)};
-        const vec3 h = maths::sample_ggx_normal(view, alpha, drawn.x, drawn.y);
+        const glm::vec2 numbers{random.uniform(0, 1), random.uniform(0, 1)};
+        const vec3 h = maths::sample_ggx_normal(view, alpha, numbers.x, numbers.y);
         EXPECT_GE(h.z, 0.0f);
         const vec3 light = reflect(-view, h);
         if (light.z <= 0.0f) continue;

@@ -53,14 +53,14 @@ TEST(Slice, NormalPerpendicularToTheSlicePlaneGivesWeightAndVisibilityZero) {
   EXPECT_EQ(s.scale, 0.0f);
   EXPECT_EQ(s.cosine, 1.0f);
   EXPECT_EQ(maths::open_slice(s), 0.0f);
-  EXPECT_EQ(maths::slice_visibility(s, -1.0f, -1.0f), 0.0f);
+  EXPECT_EQ(slice_visibility(s, -1.0f, -1.0f), 0.0f);
 }
 
 TEST(Slice, ZeroAndDenormalisedNormalsGiveFiniteResults) {
   for (const float size : {0.0f, 1e-42f, 1e-20f}) {
     const Slice s = maths::make_slice(vec3(size, 0, size), vec3(1, 0, 0), vec3(0, 0, 1));
     EXPECT_TRUE(std::isfinite(maths::open_slice(s)));
-    EXPECT_TRUE(std::isfinite(maths::slice_visibility(s, 0.3f, 0.3f)));
+    EXPECT_TRUE(std::isfinite(slice_visibility(s, 0.3f, 0.3f)));
   }
 }
 
@@ -88,8 +88,8 @@ TEST(Gtao, VisibilityOfAHalfSliceAgreesWithQuadratureForEveryNormalAndHorizon) {
   for_each_slice_and_horizon([&](const Slice& s, const SliceTruth& truth, float c) {
     const double ahead = truth.visibility(0.0, std::acos(double(c)));
     const double behind = truth.visibility(-std::acos(double(c)), 0.0);
-    worst = std::max(worst, std::abs(maths::slice_arc(s, 1.0f, c) - ahead));
-    worst = std::max(worst, std::abs(maths::slice_arc(s, -1.0f, c) - behind));
+    worst = std::max(worst, std::abs(slice_arc(s, 1.0f, c) - ahead));
+    worst = std::max(worst, std::abs(slice_arc(s, -1.0f, c) - behind));
   });
   EXPECT_LT(worst, 2.4e-5);
 }
@@ -99,7 +99,7 @@ TEST(Gtao, VisibilityOfAHalfSliceEqualsTheIntegralOfThePaper) {
   for (int i = 0; i < 10000; ++i) {
     const double g = random.uniform(-1.57f, 1.57f), h = random.uniform(0.0f, float(g + kPi / 2));
     const double j = 0.25 * (-std::cos(2 * h - g) + std::cos(g) + 2 * h * std::sin(g));
-    EXPECT_NEAR(maths::slice_arc(slice_of(1.0, g), 1.0f, float(std::cos(h))), j, 5e-5);
+    EXPECT_NEAR(slice_arc(slice_of(1.0, g), 1.0f, float(std::cos(h))), j, 5e-5);
   }
 }
 
@@ -108,27 +108,26 @@ TEST(Gtao, VisibilityOfAHalfSliceIncreasesAsTheHorizonFallsToTheTangentPlane) {
     const Slice s = slice_of(1.0, gamma);
     float before = -1e-6f;
     for (float c = 1.0f; c >= -1.0f; c -= 1e-3f) {
-      const float arc = maths::slice_arc(s, 1.0f, c);
+      const float arc = slice_arc(s, 1.0f, c);
       EXPECT_GE(arc, before - 2e-5f) << "gamma " << gamma << " cosine " << c;
       before = arc;
     }
-    EXPECT_EQ(maths::slice_arc(s, 1.0f, -1.0f),
-              maths::slice_arc(s, 1.0f, maths::tangent_horizon(s, 1.0f)));
+    EXPECT_EQ(slice_arc(s, 1.0f, -1.0f), slice_arc(s, 1.0f, maths::tangent_horizon(s, 1.0f)));
   }
 }
 
 TEST(Gtao, HorizonCosinesOutOfRangeAreClamped) {
   const Slice s = slice_of(1.0, 0.3);
-  EXPECT_EQ(maths::slice_visibility(s, 9.0f, 9.0f), 0.0f);
-  EXPECT_EQ(maths::slice_visibility(s, -9.0f, -9.0f), maths::slice_visibility(s, -1.0f, -1.0f));
+  EXPECT_EQ(slice_visibility(s, 9.0f, 9.0f), 0.0f);
+  EXPECT_EQ(slice_visibility(s, -9.0f, -9.0f), slice_visibility(s, -1.0f, -1.0f));
 }
 
 TEST(Gtao, VisibilityOfAnUnoccludedSliceEqualsTheIntegralUpToTheTangentPlane) {
   for (double gamma = -kPi / 2; gamma <= kPi / 2; gamma += 0.01) {
     const Slice s = slice_of(0.8, gamma);
     EXPECT_NEAR(maths::open_slice(s), SliceTruth(s).open(), 5e-5);
-    EXPECT_NEAR(maths::slice_visibility(s, -1.0f, -1.0f), maths::open_slice(s), 1e-4);
-    EXPECT_LE(maths::slice_visibility(s, -1.0f, -1.0f), 1.5709f);
+    EXPECT_NEAR(slice_visibility(s, -1.0f, -1.0f), maths::open_slice(s), 1e-4);
+    EXPECT_LE(slice_visibility(s, -1.0f, -1.0f), 1.5709f);
   }
 }
 
@@ -141,7 +140,7 @@ float visibility_over_slices(vec3 normal, vec3 view, int slices, double offset, 
   for (int k = 0; k < slices; ++k) {
     const vec3 direction = maths::slice_direction(basis, float(kPi * (k + offset) / slices));
     const Slice s = maths::make_slice(normal, direction, view);
-    sum += maths::slice_visibility(s, horizon(direction), horizon(-direction));
+    sum += slice_visibility(s, horizon(direction), horizon(-direction));
     weight += maths::open_slice(s);
   }
   return maths::mean_visibility({sum, weight});

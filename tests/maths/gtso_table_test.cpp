@@ -17,8 +17,8 @@ using alcove::passes::GtsoLobe;
 using alcove::passes::look_up_gtso;
 
 const std::vector<std::uint32_t>& table() {
-  static const std::vector<std::uint32_t> made = alcove::passes::gtso_table();
-  return made;
+  static const std::vector<std::uint32_t> entries = alcove::passes::gtso_table();
+  return entries;
 }
 
 float look_up(float visibility, float bent_from_mirror, float mirror_from_normal, float roughness) {

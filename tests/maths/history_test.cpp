@@ -22,8 +22,8 @@ maths::HistoryTexel texel_of(float depth, float occlusion, float recent, float w
 float unorm16(float value) { return std::round(value * 65535.0f) / 65535.0f; }
 
 maths::HistoryTexel stored(const maths::HistoryTexel& texel, float dither) {
-  const maths::vec2 packed = maths::pack_history_texel(texel, dither);
-  return maths::unpack_history_texel({unorm16(packed.x), unorm16(packed.y)});
+  const maths::vec2 stored = maths::pack_history_texel(texel, dither);
+  return maths::unpack_history_texel({unorm16(stored.x), unorm16(stored.y)});
 }
 
 constexpr float kMaxWeight = float(maths::kMaxHistoryFrames);
@@ -34,9 +34,9 @@ float weight_code(float weight) { return 31.0f * std::sqrt(weight / kMaxWeight);
 TEST(History, PackedHistoryTexelKeepsItsValuesWithinTheirQuantisationSteps) {
   RandomInput random;
   for (int i = 0; i < 20000; ++i) {
-    const glm::vec4 drawn{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1),
-                          random.uniform(0, kMaxWeight)};
-    const maths::HistoryTexel texel = texel_of(drawn.x, drawn.y, drawn.z, drawn.w);
+    const glm::vec4 numbers{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1),
+                            random.uniform(0, kMaxWeight)};
+    const maths::HistoryTexel texel = texel_of(numbers.x, numbers.y, numbers.z, numbers.w);
     const maths::HistoryTexel back = stored(texel, random.uniform(0.0f, 0.999f));
     EXPECT_NEAR(back.depth, texel.depth, 7.5f / 65535.0f);
     EXPECT_NEAR(back.occlusion, texel.occlusion, 1.0f / 2047.0f + 4e-6f);
@@ -146,10 +146,10 @@ TEST(History, LargeVisibilityChangesAreRecognisedAndSmallOnesAreTakenForNoise) {
     const float a = random.uniform(0.0f, 1.0f);
     const float b = random.uniform(0.0f, 1.0f);
     EXPECT_EQ(maths::visibility_changed(a, a), 0.0f);
-    const float changed = maths::visibility_changed(a, b);
-    EXPECT_GE(changed, 0.0f);
-    EXPECT_LE(changed, 1.0f);
-    EXPECT_EQ(changed, maths::visibility_changed(b, a));
+    const float change = maths::visibility_changed(a, b);
+    EXPECT_GE(change, 0.0f);
+    EXPECT_LE(change, 1.0f);
+    EXPECT_EQ(change, maths::visibility_changed(b, a));
   }
   // Unoccluded surfaces have no noise, so that outdated occlusion would leave a visible trail. A
   // change to or from full visibility must be recognised at once.

@@ -118,8 +118,8 @@ TEST(LobeSlice, AntiderivativeOfTheLobeMatchesQuadratureOfTheGgxDistribution) {
       const double whole = truth.between(d, truth.lowest(), truth.highest());
       glm::vec2 light = maths::horizon_light(s, side, float(std::cos(angle)));
       light.x *= side;
-      const float found = std::abs(maths::lobe_antiderivative(lobe.density, light) - lobe.at_view);
-      worst = std::max(worst, std::abs(found - expected) / std::max(whole, 1e-3));
+      const float part = std::abs(maths::lobe_antiderivative(lobe.density, light) - lobe.at_view);
+      worst = std::max(worst, std::abs(part - expected) / std::max(whole, 1e-3));
     }
   }
   RecordProperty("worst", std::to_string(worst));
@@ -140,8 +140,7 @@ struct WholeLobe {
 
   // Returns the integral between the two horizons, which are given by their cosines.
   float between(float horizon_ahead, float horizon_behind) const {
-    return maths::lobe_arc(slice, ahead, horizon_ahead) +
-           maths::lobe_arc(slice, behind, horizon_behind);
+    return lobe_arc(slice, ahead, horizon_ahead) + lobe_arc(slice, behind, horizon_behind);
   }
 };
 
@@ -238,7 +237,7 @@ TEST(LobeSlice, VisiblePartOfTheLobeIncreasesAsTheHorizonFalls) {
     for (const float side : {-1.0f, 1.0f}) {
       float before = 0.0f;
       for (float c = 1.0f; c >= -1.0f; c -= 0.01f) {
-        const float arc = maths::lobe_arc(s, side > 0.0f ? lobe.ahead : lobe.behind, c);
+        const float arc = lobe_arc(s, side > 0.0f ? lobe.ahead : lobe.behind, c);
         EXPECT_GE(arc, before - 1e-3f * lobe.open);
         before = arc;
       }
@@ -250,12 +249,12 @@ TEST(LobeSlice, MirrorReflectionIsVisibleIfTheHorizonIsBelowItsDirection) {
   const double tilt = 0.4;
   const Slice s = Surface(tilt).slice(0.0);
   const WholeLobe lobe(s, 0.0f);
-  const auto seen = [&](double horizon) {
+  const auto visible_share = [&](double horizon) {
     return lobe.between(float(std::cos(horizon)), -1.0f) / lobe.open;
   };
-  EXPECT_LT(seen(2 * tilt - 0.1), 0.02f);
-  EXPECT_NEAR(seen(2 * tilt), 0.5f, 0.02f);
-  EXPECT_GT(seen(2 * tilt + 0.1), 0.98f);
+  EXPECT_LT(visible_share(2 * tilt - 0.1), 0.02f);
+  EXPECT_NEAR(visible_share(2 * tilt), 0.5f, 0.02f);
+  EXPECT_GT(visible_share(2 * tilt + 0.1), 0.98f);
 }
 
 // The sectors beyond the horizon, rounded to the nearest boundary, are occluded.
@@ -274,7 +273,7 @@ TEST(LobeSlice, BitmaskOccludedBelowAHorizonLeavesTheLobeVisibleAboveThatHorizon
       const float cosine = maths::diamond_angle_light(float(first) / per_diamond_angle).y;
       for (const float hidden_occlusion : {0.0f, 0.4f, 1.0f}) {
         error.add((maths::visible_lobe(half, per_diamond_angle, hidden, hidden_occlusion) -
-                   maths::lobe_arc(s, half, cosine)) /
+                   lobe_arc(s, half, cosine)) /
                   lobe.open);
       }
       // A run of occluded sectors, and visible ones behind it.

@@ -56,10 +56,10 @@ std::map<std::string, std::uint32_t> last_offsets(std::span<const std::uint32_t>
 }
 
 TEST(ShaderParameters, StructsHaveTheSameLayoutInUniformBlocksAndInCpp) {
-  auto found = last_offsets(kParameterLayouts);
+  auto offsets = last_offsets(kParameterLayouts);
   for (const auto& [name, offset] : kLastOffsets) {
-    ASSERT_TRUE(found.contains(name)) << name;
-    EXPECT_EQ(found[name], offset) << name;
+    ASSERT_TRUE(offsets.contains(name)) << name;
+    EXPECT_EQ(offsets[name], offset) << name;
   }
 }
 

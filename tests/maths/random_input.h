@@ -40,8 +40,8 @@ class RandomInput {
 
  private:
   static unsigned environment_seed() {
-    const char* given = std::getenv("ALCOVE_TEST_SEED");
-    return given != nullptr ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : 1;
+    const char* seed = std::getenv("ALCOVE_TEST_SEED");
+    return seed != nullptr ? static_cast<unsigned>(std::strtoul(seed, nullptr, 10)) : 1;
   }
 
   std::mt19937 engine_;

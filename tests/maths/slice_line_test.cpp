@@ -155,16 +155,16 @@ TEST(SliceLine, InverseDepthOfAnyRawDepthIsBetweenTheNearPlaneAndTheSky) {
     for (const bool reversed : {false, true}) {
       const bool sky = reversed ? !(ndc > 0.0f) : !(ndc < 1.0f);
       for (const float far : {0.0f, 0.01f}) {
-        const float found = maths::inverse_depth_of_ndc({10.0f - far, far}, ndc, true, reversed);
-        EXPECT_EQ(found == maths::sky_inverse_depth(true), sky) << ndc << ' ' << reversed;
-        EXPECT_GE(found, 0.0f) << ndc << ' ' << reversed;
-        EXPECT_LE(found, 10.0f) << ndc << ' ' << reversed;
+        const float depth = maths::inverse_depth_of_ndc({10.0f - far, far}, ndc, true, reversed);
+        EXPECT_EQ(depth == maths::sky_inverse_depth(true), sky) << ndc << ' ' << reversed;
+        EXPECT_GE(depth, 0.0f) << ndc << ' ' << reversed;
+        EXPECT_LE(depth, 10.0f) << ndc << ' ' << reversed;
       }
-      const float found = maths::inverse_depth_of_ndc(
+      const float depth = maths::inverse_depth_of_ndc(
           reversed ? maths::vec2(-20.0f, 10.0f) : maths::vec2(20.0f, -10.0f), ndc, false, reversed);
-      EXPECT_EQ(found == maths::sky_inverse_depth(false), sky) << ndc << ' ' << reversed;
-      EXPECT_GE(found, -10.0f) << ndc << ' ' << reversed;
-      EXPECT_TRUE(sky || found <= 10.0f) << ndc << ' ' << reversed;
+      EXPECT_EQ(depth == maths::sky_inverse_depth(false), sky) << ndc << ' ' << reversed;
+      EXPECT_GE(depth, -10.0f) << ndc << ' ' << reversed;
+      EXPECT_TRUE(sky || depth <= 10.0f) << ndc << ' ' << reversed;
     }
   }
 }
@@ -280,11 +280,12 @@ TEST(ConnectedSamples, OnlySlopeChangesAboveTheThresholdAreDepthDiscontinuities)
   for (int i = 0; i < 2000; ++i) {
     const float before = random.uniform(-1.0f, 1.0f), after = random.uniform(-1.0f, 1.0f);
     const float width = random.uniform(0.5f, 5.0f), next = random.uniform(0.5f, 5.0f);
-    const auto found = maths::depth_discontinuity(before * width, width, after * next, next, 0.1f);
+    const auto discontinuity =
+        maths::depth_discontinuity(before * width, width, after * next, next, 0.1f);
     const float change = before - after;
     if (std::abs(std::abs(change) - 0.1f) > 1e-4f) {
-      EXPECT_EQ(found.convex, change > 0.1f);
-      EXPECT_EQ(found.concave, change < -0.1f);
+      EXPECT_EQ(discontinuity.convex, change > 0.1f);
+      EXPECT_EQ(discontinuity.concave, change < -0.1f);
     }
   }
 }

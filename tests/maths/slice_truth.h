@@ -1,11 +1,14 @@
 // A slice in double precision, computed from its definition, as the reference for the shaders'
-// closed forms.
+// closed forms, and these closed forms up to a horizon, which is given by its cosine as in
+// horizon_light().
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "maths/gtao.h"
+#include "maths/lobe_slice.h"
 #include "maths/slice.h"
 #include "quadrature.h"
 #include "random_input.h"
@@ -63,6 +66,21 @@ inline maths::Slice slice_of(double scale, double gamma) {
 inline maths::Slice random_slice(RandomInput& random) {
   const float scale = random.uniform(0.05f, 1.0f);
   return slice_of(scale, random.uniform(-1.57f, 1.57f));
+}
+
+// Returns light_arc() up to a horizon.
+inline float slice_arc(const maths::Slice& s, float side, float horizon) {
+  return maths::light_arc(s, side, maths::horizon_light(s, side, horizon));
+}
+
+// Returns the visible part of both half-slices. `ahead` is the horizon in the positive half-slice.
+inline float slice_visibility(const maths::Slice& s, float ahead, float behind) {
+  return std::max(slice_arc(s, 1.0f, ahead) + slice_arc(s, -1.0f, behind), 0.0f);
+}
+
+// Returns lobe_light_arc() up to a horizon.
+inline float lobe_arc(const maths::Slice& s, const maths::HalfLobe& lobe, float horizon) {
+  return maths::lobe_light_arc(lobe, maths::horizon_light(s, lobe.side, horizon));
 }
 
 // Calls f(slice, truth, horizon) for slices of many normals. `horizon` is the cosine of an angle

@@ -178,12 +178,12 @@ TEST(QuantisedNormal, SquaredAngleToAnotherNormalIsApproximatedForSmallAngles) {
     };
     EXPECT_NEAR(angle_to(own), 0.0f, 1e-12f);
     const float cosine = dot(own, other);
-    const float found = angle_to(other);
+    const float angle = angle_to(other);
     if (cosine > 0.97f) {
-      EXPECT_NEAR(found, 2.0f - 2.0f * cosine, 0.3f * (2.0f - 2.0f * cosine) + 2e-5f);
+      EXPECT_NEAR(angle, 2.0f - 2.0f * cosine, 0.3f * (2.0f - 2.0f * cosine) + 2e-5f);
     }
     if (cosine < 0.5f) {
-      EXPECT_GT(found, 0.5f);
+      EXPECT_GT(angle, 0.5f);
     }
   }
 }

@@ -85,10 +85,10 @@ TEST(UnobservedDirections, ExcludedPartOfAHalfSliceEqualsQuadratureOfTheExcluded
   for (int i = 0; i < kCases; ++i) {
     const Case c(random);
     const SliceTruth slice(c.slice);
-    const double found = c.excluded();
+    const double part = c.excluded();
     const double truth = c.truth([&](double t) { return slice.density(double(c.side) * t); });
-    worst = std::max(worst, std::abs(found - truth));
-    sum += std::abs(found - truth);
+    worst = std::max(worst, std::abs(part - truth));
+    sum += std::abs(part - truth);
     largest = std::max(largest, truth);
   }
   EXPECT_GT(largest, 0.5);
@@ -108,7 +108,7 @@ TEST(UnobservedDirections, ExcludedPartOfTheSpecularLobeIsThatWithinTheUnobserve
     const maths::HalfLobe lobe = maths::make_half_lobe(c.slice, c.side, alpha);
     const float open = lobe.whole + maths::make_half_lobe(c.slice, -c.side, alpha).whole;
     const auto up_to = [&](double angle) {
-      return double(maths::lobe_arc(c.slice, lobe, float(std::cos(angle))));
+      return double(lobe_arc(c.slice, lobe, float(std::cos(angle))));
     };
     const double from = std::min(c.begins(), c.ends());
     const double truth = c.share() * (up_to(c.ends()) - up_to(from));

@@ -109,26 +109,26 @@ void CAreas::run_sheet(bool band) {
           create_poisoned(own[0].images[each.role]);
     run_frame(context(), shared, index);
     engine().wait();
-    const HostOutputs found = read_results(shared[0]);
-    HostOutputs left = found;
+    const HostOutputs outputs = read_results(shared[0]);
+    HostOutputs rest = outputs;
     for (std::size_t i = 0; i < 2; ++i) {
       SCOPED_TRACE("view " + std::to_string(i));
       const HostOutputs expected = read_results(own[i]);
       EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
-      const AlcoveArea written = band ? own[i].info.written_area : shared[i].info.read_area;
-      const AlcoveArea size{0, 0, written.width, written.height};
+      const AlcoveArea inner = band ? own[i].info.written_area : shared[i].info.read_area;
+      const AlcoveArea size{0, 0, inner.width, inner.height};
       const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width,
                             size.height};
       for (const OutputMember& each : kOutputs) {
         if ((expected.*each.texels).texels.empty()) continue;
         HostImage part = part_of(expected.*each.texels, size);
-        EXPECT_EQ(part_of(found.*each.texels, area).texels, part.texels);
+        EXPECT_EQ(part_of(outputs.*each.texels, area).texels, part.texels);
         std::ranges::fill(part.texels, kPoison);
-        place(left.*each.texels, part, area.x, area.y);
+        place(rest.*each.texels, part, area.x, area.y);
       }
     }
     for (const OutputMember& each : kOutputs)
-      EXPECT_TRUE(std::ranges::all_of((left.*each.texels).texels,
+      EXPECT_TRUE(std::ranges::all_of((rest.*each.texels).texels,
                                       [](float texel) { return texel == kPoison; }));
   }
 }
@@ -150,13 +150,13 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     run_frame(context(), views, index);
     engine().wait();
     const HostOutputs expected = read_results(views[0]);
-    const HostOutputs found = read_results(views[1]);
-    const AlcoveArea& written = views[1].info.written_area;
-    const AlcoveArea corner{0, 0, written.width, written.height};
-    EXPECT_EQ(part_of(found.visibility, corner).texels,
-              part_of(expected.visibility, written).texels);
-    if (!found.specular.texels.empty()) {
-      EXPECT_EQ(part_of(found.specular, corner).texels, part_of(expected.specular, written).texels);
+    const HostOutputs outputs = read_results(views[1]);
+    const AlcoveArea& inner = views[1].info.written_area;
+    const AlcoveArea corner{0, 0, inner.width, inner.height};
+    EXPECT_EQ(part_of(outputs.visibility, corner).texels,
+              part_of(expected.visibility, inner).texels);
+    if (!outputs.specular.texels.empty()) {
+      EXPECT_EQ(part_of(outputs.specular, corner).texels, part_of(expected.specular, inner).texels);
     }
   }
 }

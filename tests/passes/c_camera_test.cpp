@@ -31,10 +31,10 @@ glm::mat4 expected_clip() {
   return clip;
 }
 
-void expect_near(const glm::mat4& found, const glm::mat4& expected) {
+void expect_near(const glm::mat4& matrix, const glm::mat4& expected) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
-      EXPECT_NEAR(found[column][row], expected[column][row], 1e-5f) << column << ", " << row;
+      EXPECT_NEAR(matrix[column][row], expected[column][row], 1e-5f) << column << ", " << row;
 }
 
 // In Direct3D's view space the camera looks along +Z, x points to the right and y up. World space
@@ -87,11 +87,11 @@ TEST(CCamera, PerspectiveMadeFromAngleAndPlanesEqualsThatOfGlmAndProjectsItsPlan
   expect_near(glm::make_mat4(clip_from_view), expected_clip());
   for (const bool reversed : {false, true}) {
     for (const float far : {kFar, 0.0f, std::numeric_limits<float>::infinity()}) {
-      AlcovePerspective changed = perspective();
-      changed.reversed = reversed ? VK_TRUE : VK_FALSE;
-      changed.far_plane = far;
+      AlcovePerspective info = perspective();
+      info.reversed = reversed ? VK_TRUE : VK_FALSE;
+      info.far_plane = far;
       float clip[16];
-      ASSERT_EQ(alcoveMakePerspective(&changed, clip), ALCOVE_SUCCESS);
+      ASSERT_EQ(alcoveMakePerspective(&info, clip), ALCOVE_SUCCESS);
       const auto depth_at = [&](float distance) {
         const glm::vec4 p = glm::make_mat4(clip) * glm::vec4(0.0f, 0.0f, -distance, 1.0f);
         return p.z / p.w;
@@ -103,12 +103,12 @@ TEST(CCamera, PerspectiveMadeFromAngleAndPlanesEqualsThatOfGlmAndProjectsItsPlan
 }
 
 TEST(CCamera, JitterGivenInPixelsShiftsTheImageByThatManyPixels) {
-  AlcovePerspective changed = perspective();
+  AlcovePerspective info = perspective();
   float still[16], moved[16];
-  ASSERT_EQ(alcoveMakePerspective(&changed, still), ALCOVE_SUCCESS);
-  changed.jitter_px[0] = 0.25f;
-  changed.jitter_px[1] = -0.5f;
-  ASSERT_EQ(alcoveMakePerspective(&changed, moved), ALCOVE_SUCCESS);
+  ASSERT_EQ(alcoveMakePerspective(&info, still), ALCOVE_SUCCESS);
+  info.jitter_px[0] = 0.25f;
+  info.jitter_px[1] = -0.5f;
+  ASSERT_EQ(alcoveMakePerspective(&info, moved), ALCOVE_SUCCESS);
   const auto pixel_of = [](const float* clip, const glm::vec3& p) {
     const glm::vec4 at = glm::make_mat4(clip) * glm::vec4(p, 1.0f);
     return (glm::vec2(at) / at.w * 0.5f + 0.5f) * glm::vec2(300.0f, 200.0f);
@@ -126,10 +126,10 @@ TEST(CCamera, PerspectiveParametersOutOfRangeAreErrors) {
                             +[](P& p) { p.near_plane = NAN; }, +[](P& p) { p.far_plane = 0.05f; },
                             +[](P& p) { p.far_plane = -1.0f; }, +[](P& p) { p.width = 0; },
                             +[](P& p) { p.jitter_px[1] = NAN; }}) {
-    AlcovePerspective changed = perspective();
-    change(changed);
+    AlcovePerspective info = perspective();
+    change(info);
     float clip[16];
-    EXPECT_EQ(alcoveMakePerspective(&changed, clip), ALCOVE_ERROR_INVALID_INPUT);
+    EXPECT_EQ(alcoveMakePerspective(&info, clip), ALCOVE_ERROR_INVALID_INPUT);
   }
 }
 

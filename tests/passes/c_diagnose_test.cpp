@@ -1,5 +1,5 @@
-// Tests alcoveDiagnose on right frames of every kind of view, and how it forgets. tests/host makes
-// each mistake on purpose.
+// Tests alcoveDiagnose on correct frames of every kind of view, and how it forgets. tests/host
+// makes each mistake on purpose.
 #include <gmock/gmock.h>
 
 #include <algorithm>

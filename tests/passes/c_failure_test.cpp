@@ -125,9 +125,9 @@ TEST_F(CFailure, EnabledFeaturesAreFoundInAnyOrderOfTheirStructs) {
       do {
         for (std::size_t i = 0; i < 3; ++i) chain.at(i)->pNext = i < 2 ? chain.at(i + 1) : nullptr;
         info.enabled_features = reinterpret_cast<const VkPhysicalDeviceFeatures2*>(chain[0]);
-        const std::string said =
+        const std::string sentence =
             error_of_context(info, complete ? ALCOVE_SUCCESS : ALCOVE_ERROR_UNSUPPORTED);
-        EXPECT_THAT(said, HasSubstr(complete ? "" : "shaderStorageImageWriteWithoutFormat"));
+        EXPECT_THAT(sentence, HasSubstr(complete ? "" : "shaderStorageImageWriteWithoutFormat"));
       } while (std::ranges::next_permutation(chain).found);
       // Without VkPhysicalDeviceFeatures2, and with a chain that does not end.
       vulkan11.pNext = nullptr;

@@ -19,8 +19,8 @@ constexpr std::uint32_t kHeight = 30;
 
 // Returns an image of the same size with `channels` channels. `map` makes each texel from the texel
 // of `image` at the same place.
-HostImage mapped(const HostImage& image, std::uint32_t channels,
-                 const std::function<void(const float* from, float* to)>& map) {
+HostImage map_texels(const HostImage& image, std::uint32_t channels,
+                     const std::function<void(const float* from, float* to)>& map) {
   HostImage result{image.width, image.height, {}, channels};
   const std::size_t texels = std::size_t{image.width} * image.height;
   result.texels.resize(texels * channels);
@@ -29,31 +29,31 @@ HostImage mapped(const HostImage& image, std::uint32_t channels,
   return result;
 }
 
-HostImage packed(const HostImage& image) {
-  return mapped(image, image.channels, [&](const float* from, float* to) {
+HostImage pack(const HostImage& image) {
+  return map_texels(image, image.channels, [&](const float* from, float* to) {
     std::transform(from, from + image.channels, to, [](float x) { return 0.5f + 0.5f * x; });
   });
 }
 
 HostImage octahedral(const HostImage& image) {
-  return mapped(image, 2, [](const float* from, float* to) {
+  return map_texels(image, 2, [](const float* from, float* to) {
     const glm::vec2 encoded = maths::octahedral_encode({from[0], from[1], from[2]});
     to[0] = encoded.x;
     to[1] = encoded.y;
   });
 }
 
-HostImage mirrored(const HostImage& image) {
-  return mapped(image, image.channels, [&](const float* from, float* to) {
+HostImage mirror(const HostImage& image) {
+  return map_texels(image, image.channels, [&](const float* from, float* to) {
     std::copy_n(from, image.channels, to);
     to[2] = -to[2];
   });
 }
 
-void expect_near(const HostOutputs& found, const HostOutputs& expected, double limit) {
+void expect_near(const HostOutputs& outputs, const HostOutputs& expected, double limit) {
   for (const OutputMember& each : kOutputs) {
     if ((expected.*each.texels).texels.empty()) continue;
-    EXPECT_LT(rms(found.*each.texels, expected.*each.texels), limit);
+    EXPECT_LT(rms(outputs.*each.texels, expected.*each.texels), limit);
   }
 }
 
@@ -89,13 +89,13 @@ TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
   const HostOutputs expected = run_frames(view, 2);
   const HostImage plain = view.normals, two = octahedral(plain);
   for (const auto& [encoding, normals] :
-       {std::pair{ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, packed(plain)},
+       {std::pair{ALCOVE_NORMAL_ENCODING_UNSIGNED_XYZ, pack(plain)},
         {ALCOVE_NORMAL_ENCODING_OCTAHEDRAL, two},
-        {ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, packed(two)}}) {
+        {ALCOVE_NORMAL_ENCODING_UNSIGNED_OCTAHEDRAL, pack(two)}}) {
     SCOPED_TRACE(static_cast<int>(encoding));
     view.normals = normals;
-    const AlcoveNormalEncoding wanted = encoding;
-    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.info.normal_encoding = wanted; }),
+    const AlcoveNormalEncoding value = encoding;
+    expect_near(run_frames(view, 2, [&](AlcoveView& v) { v.info.normal_encoding = value; }),
                 expected, 2e-3);
   }
 }
@@ -103,11 +103,11 @@ TEST_F(CInputs, AllNormalEncodingsGiveTheSameImages) {
 TEST_F(CInputs, NormalsOfACameraAlongPlusZAreMirroredOnInputAndBentNormalsOnOutput) {
   HostView view = draw_inputs();
   const HostOutputs expected = run_frames(view, 2);
-  view.normals = mirrored(view.normals);
-  HostOutputs found =
+  view.normals = mirror(view.normals);
+  HostOutputs outputs =
       run_frames(view, 2, [](AlcoveView& v) { v.info.normals_forward_z = VK_TRUE; });
-  found.bent_normal = mirrored(found.bent_normal);
-  expect_near(found, expected, 1e-5);
+  outputs.bent_normal = mirror(outputs.bent_normal);
+  expect_near(outputs, expected, 1e-5);
 }
 
 // All planes face the eye, so that the history has the same depth everywhere. If motion vectors
@@ -132,7 +132,7 @@ TEST_F(CInputs, MotionVectorsInAnyUnitAndSignConventionGiveTheSameImages) {
                               {{1.0f, 1.0f}, {0.004f, -0.006f}},
                               {{0.5f, -0.5f}, {0.0f, 0.0f}}}) {
     HostView changed = moving;
-    changed.motion = mapped(moving.motion, 2, [&](const float* from, float* to) {
+    changed.motion = map_texels(moving.motion, 2, [&](const float* from, float* to) {
       for (int i = 0; i < 2; ++i) to[i] = (from[i] - c.offset[i]) / c.scale[i];
     });
     expect_near(run_frames(changed, 3,

@@ -26,18 +26,18 @@ HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> 
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene,
                    const TestView& view) {
   const Drawing drawing = draw(view, width, height, scene);
-  HostView drawn{.view = view.view,
-                 .depth_ndc = drawing.depth_ndc,
-                 .normals = drawing.normal_vs,
-                 .motion = uniform(width, height, {0.01f, -0.02f}),
-                 .roughness = uniform(width, height, {0.3f, 0.6f}),
-                 .back_depth_ndc = draw_back_faces(view, width, height, scene),
-                 .second_depth_ndc = draw_second_layer(view, width, height, scene),
-                 .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
-  drawn.previous_view = drawn.view;
-  drawn.settings.roughness_channel = 1;
-  drawn.settings.precision = ALCOVE_PRECISION_FLOAT32;
-  return drawn;
+  HostView host_view{.view = view.view,
+                     .depth_ndc = drawing.depth_ndc,
+                     .normals = drawing.normal_vs,
+                     .motion = uniform(width, height, {0.01f, -0.02f}),
+                     .roughness = uniform(width, height, {0.3f, 0.6f}),
+                     .back_depth_ndc = draw_back_faces(view, width, height, scene),
+                     .second_depth_ndc = draw_second_layer(view, width, height, scene),
+                     .albedo = uniform(width, height, {0.8f, 0.4f, 0.1f, 1.0f})};
+  host_view.previous_view = host_view.view;
+  host_view.settings.roughness_channel = 1;
+  host_view.settings.precision = ALCOVE_PRECISION_FLOAT32;
+  return host_view;
 }
 
 void request_all_outputs(HostView& view) {
@@ -89,9 +89,9 @@ AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index) {
           .views = views.data()};
 }
 
-void expect_equal(const HostOutputs& found, const HostOutputs& expected) {
+void expect_equal(const HostOutputs& outputs, const HostOutputs& expected) {
   for (const OutputMember& each : kOutputs)
-    EXPECT_EQ((found.*each.texels).texels, (expected.*each.texels).texels);
+    EXPECT_EQ((outputs.*each.texels).texels, (expected.*each.texels).texels);
 }
 
 std::string print(const std::function<std::size_t(char*, std::size_t)>& write) {
@@ -143,11 +143,11 @@ Context CInterface::create_context() {
 
 AlcoveImage CInterface::input(const HostImage& contents) {
   if (contents.texels.empty()) return {};
-  const auto known = std::ranges::find_if(inputs_, [&](const auto& input) {
+  const auto entry = std::ranges::find_if(inputs_, [&](const auto& input) {
     return input.first.width == contents.width && input.first.height == contents.height &&
            input.first.texels == contents.texels;
   });
-  if (shares_inputs_ && known != inputs_.end()) return known->second;
+  if (shares_inputs_ && entry != inputs_.end()) return entry->second;
   const AlcoveImage image = engine_->make_image(float_format(contents.channels), contents.width,
                                                 contents.height, kInputUsage);
   engine_->write(image, std::as_bytes(std::span(contents.texels)));
@@ -178,8 +178,8 @@ AlcoveView CInterface::create_view(const HostView& from) {
   AlcoveView view{.struct_size = sizeof(AlcoveView), .info = view_info(from)};
   view.info.settings = &settings_.emplace_back(from.settings);
   for (const InputMember& each : kInputs) view.images[each.role] = input(from.*each.texels);
-  const auto request = [&](bool wanted, AlcoveImageRole role, AlcovePrecision precision) {
-    if (wanted) {
+  const auto request = [&](bool enabled, AlcoveImageRole role, AlcovePrecision precision) {
+    if (enabled) {
       view.images[role] =
           output(output_format(role, precision), from.depth_ndc.width, from.depth_ndc.height);
     }

@@ -44,7 +44,7 @@ void advance(HostView& view, std::uint32_t index);
 // Returns frame `index` of these views.
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index);
 
-void expect_equal(const HostOutputs& found, const HostOutputs& expected);
+void expect_equal(const HostOutputs& outputs, const HostOutputs& expected);
 
 // Returns the text of a function such as alcovePrintPlan, which writes like snprintf.
 std::string print(const std::function<std::size_t(char*, std::size_t)>& write);

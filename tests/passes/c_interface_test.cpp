@@ -32,9 +32,9 @@ TEST_F(CInterface, ViewsRecordedInOneFrameEqualViewsRecordedInSeparateFrames) {
     views[2].settings.history_frames = 0;
     views[2].reset = i == 2;
     if (i == 2) views.erase(views.begin());  // a view that is not recorded keeps its history
-    const std::vector<HostOutputs> found = run_views(context(), views, i);
+    const std::vector<HostOutputs> outputs = run_views(context(), views, i);
     for (std::size_t view = 0; view < views.size(); ++view)
-      expect_equal(found[view], run_plainly(views[view], i));
+      expect_equal(outputs[view], run_plainly(views[view], i));
   }
 }
 
@@ -55,9 +55,9 @@ TEST_F(CInterface, MirroringTheWorldAndItsCameraGivesTheSameImage) {
     views[1].view.view_from_world[10] = -1.0f;
     views[1].previous_view.view_from_world[10] = -1.0f;
     mirror(views[1].normals);
-    std::vector<HostOutputs> found = run_views(context(), views, i);
-    mirror(found[1].bent_normal);
-    expect_equal(found[1], found[0]);
+    std::vector<HostOutputs> outputs = run_views(context(), views, i);
+    mirror(outputs[1].bent_normal);
+    expect_equal(outputs[1], outputs[0]);
   }
 }
 
@@ -75,9 +75,9 @@ TEST_F(CInterface, EightViewsWithAllInputsAndOutputsCanBeRecordedInOneFrame) {
       view.settings.specular = ALCOVE_SPECULAR_TABLE;
     }
   }
-  const std::vector<HostOutputs> found = run_views(context(), views, 0);
+  const std::vector<HostOutputs> outputs = run_views(context(), views, 0);
   for (std::size_t id = 0; id < views.size(); ++id)
-    expect_equal(found[id], run_plainly(views[id], 0));
+    expect_equal(outputs[id], run_plainly(views[id], 0));
 }
 
 // In the middle of a sequence, frames with other settings, outputs or sizes are discarded, because

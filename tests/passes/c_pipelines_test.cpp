@@ -24,12 +24,12 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 std::uint32_t count,
                                                 const VkComputePipelineCreateInfo* infos,
                                                 const VkAllocationCallbacks* callbacks,
-                                                VkPipeline* made) {
+                                                VkPipeline* handles) {
   pipelines += count;
   caches.insert(cache);
-  std::fill_n(made, count, VkPipeline{VK_NULL_HANDLE});
+  std::fill_n(handles, count, VkPipeline{VK_NULL_HANDLE});
   if (!compiles) return VK_SUCCESS;
-  return vkCreateComputePipelines(device, cache, count, infos, callbacks, made);
+  return vkCreateComputePipelines(device, cache, count, infos, callbacks, handles);
 }
 
 class CPipelines : public CInterface {
@@ -139,20 +139,20 @@ TEST_F(CPipelines, PreparingAFrameCreatesAllPipelinesThatItsViewsEverNeed) {
     AlcoveView view = create_view(from);
     pipelines = 0;
     run_life(*create_counted(), view);
-    const std::uint32_t needed = pipelines;
+    const std::uint32_t pipelines_of_life = pipelines;
     pipelines = 0;
     const Context context = create_counted();
     prepare(*context, view);
-    EXPECT_EQ(pipelines, needed);
+    EXPECT_EQ(pipelines, pipelines_of_life);
     run_life(*context, view);
-    EXPECT_EQ(pipelines, needed);
+    EXPECT_EQ(pipelines, pipelines_of_life);
     // A static frame prepares the same pipelines as a moving one.
     pipelines = 0;
     compiles = false;
     view.info.static_frames = 20;
     prepare(*create_counted(), view);
     compiles = true;
-    EXPECT_EQ(pipelines, needed);
+    EXPECT_EQ(pipelines, pipelines_of_life);
   }
 }
 
@@ -219,15 +219,15 @@ TEST_F(CPipelines, FrameForAComputeOnlyQueueUsesNoGraphicsPipelineStage) {
     image.initial_state.access = image.final_state.access = VK_ACCESS_2_NONE;
   }
   for (std::uint32_t i = 0; i < 2; ++i) {
-    const HostOutputs found = run_view(view, i);
+    const HostOutputs outputs = run_view(view, i);
     const std::string plan = print_plan(context());
     EXPECT_THAT(plan, testing::HasSubstr("compute"));
     for (const char* stage : {"graphics", "vertex", "fragment", "attachment", "draw", "blit"})
       EXPECT_THAT(plan, testing::Not(testing::HasSubstr(stage)));
-    const auto right = framegraph::verify(context().graph.description(),
-                                          context().executor.limits(), *context().report.plan);
-    EXPECT_TRUE(right) << right.error().front().message;
-    expect_equal(found, run_plainly(from, i));
+    const auto verification = framegraph::verify(
+        context().graph.description(), context().executor.limits(), *context().report.plan);
+    EXPECT_TRUE(verification) << verification.error().front().message;
+    expect_equal(outputs, run_plainly(from, i));
   }
 }
 

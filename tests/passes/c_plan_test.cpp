@@ -88,10 +88,10 @@ TEST_F(CPlan, OutputImageWithContentsIsNotDiscardedByItsFirstLayoutTransition) {
       const std::string plan = print_plan(context());
       for (const std::string name :
            {"visibility", "bent normals", "specular occlusion", "multi-bounce"}) {
-        const std::string discarded = name + " of view 0 undefined ->";
-        const std::string kept = name + " of view 0 shader read -> general";
-        EXPECT_THAT(plan, HasSubstr(has_contents ? kept : discarded));
-        EXPECT_THAT(plan, Not(HasSubstr(has_contents ? discarded : kept)));
+        const std::string from_undefined = name + " of view 0 undefined ->";
+        const std::string from_shader_read = name + " of view 0 shader read -> general";
+        EXPECT_THAT(plan, HasSubstr(has_contents ? from_shader_read : from_undefined));
+        EXPECT_THAT(plan, Not(HasSubstr(has_contents ? from_undefined : from_shader_read)));
       }
     }
   }
@@ -139,7 +139,7 @@ TEST_F(CPlan, SizesInTheListAreWithinFivePercentOfTheMemoryOfARecordedFrame) {
     from.settings.specular = ALCOVE_SPECULAR_SLICES;
     from.motion = from.back_depth_ndc = from.second_depth_ndc = {};
     const Context context = create_context();
-    const AlcoveMemory found = run_memory(*context, from);
+    const AlcoveMemory memory = run_memory(*context, from);
     const AlcoveWorkInfo info = work_info(create_view(from));
     const auto work = std::make_unique<AlcoveWork>();
     ASSERT_EQ(alcoveDescribeWork(&info, work.get(), nullptr), ALCOVE_SUCCESS);
@@ -147,8 +147,8 @@ TEST_F(CPlan, SizesInTheListAreWithinFivePercentOfTheMemoryOfARecordedFrame) {
     for (const AlcoveWorkResource& resource : std::span(work->resources, work->resource_count))
       (resource.kind == ALCOVE_RESOURCE_KIND_TRANSIENT ? transients : history) +=
           static_cast<double>(resource.size);
-    EXPECT_NEAR(static_cast<double>(found.history), history, 0.05 * history);
-    EXPECT_NEAR(static_cast<double>(found.transients_unshared), transients, 0.05 * transients);
+    EXPECT_NEAR(static_cast<double>(memory.history), history, 0.05 * history);
+    EXPECT_NEAR(static_cast<double>(memory.transients_unshared), transients, 0.05 * transients);
   }
 }
 

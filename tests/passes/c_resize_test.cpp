@@ -263,11 +263,11 @@ void expect_within(const HostImage& image, float low, const char* what) {
 
 void CResize::expect_right(ViewState& state) {
   if (!state.is_shown) return;
-  const HostOutputs found = read_results(recorded_view(state));
-  expect_within(found.visibility, 0.0f, "visibility");
-  expect_within(found.bent_normal, -1.0f, "a bent normal");
-  expect_within(found.specular, 0.0f, "specular occlusion");
-  expect_within(found.multi_bounce, 0.0f, "multi-bounce");
+  const HostOutputs outputs = read_results(recorded_view(state));
+  expect_within(outputs.visibility, 0.0f, "visibility");
+  expect_within(outputs.bent_normal, -1.0f, "a bent normal");
+  expect_within(outputs.specular, 0.0f, "specular occlusion");
+  expect_within(outputs.multi_bounce, 0.0f, "multi-bounce");
 }
 
 void CResize::choose_kinds() {

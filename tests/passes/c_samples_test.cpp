@@ -72,8 +72,8 @@ class CSamples : public CInterface {
                                       .pDepthAttachment = &attachment};
       vkCmdBeginRendering(commands, &rendering);
       vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-      for (const Depths& drawn : {Depths{0.3f, 0.2f, 0.0f, 10.0f, ~1u}, depths}) {
-        vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof drawn, &drawn);
+      for (const Depths& each : {Depths{0.3f, 0.2f, 0.0f, 10.0f, ~1u}, depths}) {
+        vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof each, &each);
         vkCmdDraw(commands, 3, 1, 0, 0);
       }
       vkCmdEndRendering(commands);
@@ -180,12 +180,12 @@ TEST_P(CTileSize, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
         run_frame(context(), views, index);
         engine().wait();
         const HostOutputs expected = read_results(views[0]);
-        const HostOutputs found = read_results(views[1]);
+        const HostOutputs outputs = read_results(views[1]);
         EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.97f);
-        if (area.width == 0) expect_equal(found, expected);
+        if (area.width == 0) expect_equal(outputs, expected);
         for (std::uint32_t y = 0; y < area.height; ++y)
           for (std::uint32_t x = 0; x < area.width; ++x)
-            ASSERT_EQ(found.visibility.at(x, y), expected.visibility.at(x, y));
+            ASSERT_EQ(outputs.visibility.at(x, y), expected.visibility.at(x, y));
       }
     }
   }

@@ -34,9 +34,9 @@ TEST_F(CDynamicResolution, RenderingToAPartOfAnImageGivesTheSameResultAsAnImageO
     view.info.previous_camera = view.info.camera;
     view.info.camera.view_from_world[12] = from.view.view_from_world[12] =
         0.02f * static_cast<float>(i);
-    const HostOutputs found = run_view(view, i);
-    EXPECT_LT(std::ranges::min(found.visibility.texels), 0.9f);
-    expect_equal(found, run_plainly(from, i));
+    const HostOutputs outputs = run_view(view, i);
+    EXPECT_LT(std::ranges::min(outputs.visibility.texels), 0.9f);
+    expect_equal(outputs, run_plainly(from, i));
     from.previous_view = from.view;
   }
 }
@@ -59,7 +59,7 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
   constant.id = 1;
   const double fresh = rms(run_plainly(constant, kFrames - 1).visibility, expected.visibility);
   for (const bool motion : {false, true}) {
-    HostOutputs found;
+    HostOutputs outputs;
     VkDeviceSize history = 0;
     for (std::uint32_t i = 0; i < kFrames; ++i) {
       HostView from = draw_size(kSizes.at(i % kSizes.size()), motion);
@@ -67,13 +67,13 @@ TEST_F(CDynamicResolution, HistoryKeepsAccumulatingWhileTheRenderedSizeChangesIn
       from.largest_size = kSizes[2];
       from.previous_size = kSizes.at((i + kSizes.size() - 1) % kSizes.size());
       from.reset = i == 0;
-      found = run_views(*context, {&from, 1}, i)[0];
-      expect_equal(found, run_plainly(from, i));
+      outputs = run_views(*context, {&from, 1}, i)[0];
+      expect_equal(outputs, run_plainly(from, i));
       history = i == 0 ? get_memory(*context).history : history;
       EXPECT_EQ(get_memory(*context).history, history);
     }
     // The difference includes the rounding of both images to 8 bits, a root mean square of 0.0011.
-    EXPECT_LT(rms(found.visibility, expected.visibility), 0.8 * fresh) << motion;
+    EXPECT_LT(rms(outputs.visibility, expected.visibility), 0.8 * fresh) << motion;
     EXPECT_EQ(alcoveDropView(context.get(), 2), ALCOVE_SUCCESS);
   }
 }

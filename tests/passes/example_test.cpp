@@ -50,8 +50,8 @@ tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer
 }
 
 framegraph::ImportedTexture import_of(const AlcoveImage& image) {
-  const auto state = [](const AlcoveState& given) {
-    return framegraph::State{given.stages, given.access, given.layout};
+  const auto state = [](const AlcoveState& of) {
+    return framegraph::State{of.stages, of.access, of.layout};
   };
   return {.image = image.image,
           .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
@@ -76,26 +76,26 @@ TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
   from.settings.precision = ALCOVE_PRECISION_UNORM8;
   from.normals_in_view_space = false;
   from.motion = from.roughness = from.albedo = {};
-  const std::unique_ptr<Engine> started = start();
-  ASSERT_NE(started, nullptr);
+  const std::unique_ptr<Engine> example = start();
+  ASSERT_NE(example, nullptr);
   const AlcoveView images = create_view(from);
-  started->settings = from.settings;
-  started->depth = import_of(images.images[ALCOVE_IMAGE_DEPTH]);
-  started->normals = import_of(images.images[ALCOVE_IMAGE_NORMALS]);
-  started->visibility = import_of(images.images[ALCOVE_IMAGE_VISIBILITY]);
+  example->settings = from.settings;
+  example->depth = import_of(images.images[ALCOVE_IMAGE_DEPTH]);
+  example->normals = import_of(images.images[ALCOVE_IMAGE_NORMALS]);
+  example->visibility = import_of(images.images[ALCOVE_IMAGE_VISIBILITY]);
   for (std::uint32_t i = 0; i < 4; ++i) {
     from.previous_view = from.view;
     from.view.view_from_world[12] = 0.02f * static_cast<float>(i);
-    started->camera = from.view;
-    started->previous_camera = from.previous_view;
-    started->frame = i;
-    started->slot = i % 2;
-    engine().submit(started->slot, [&](VkCommandBuffer commands) {
-      const auto recorded = record_occlusion(*started, commands);
-      EXPECT_TRUE(recorded) << recorded.error();
+    example->camera = from.view;
+    example->previous_camera = from.previous_view;
+    example->frame = i;
+    example->slot = i % 2;
+    engine().submit(example->slot, [&](VkCommandBuffer commands) {
+      const auto result = record_occlusion(*example, commands);
+      EXPECT_TRUE(result) << result.error();
     });
-    const passes::HostImage found = read(images.images[ALCOVE_IMAGE_VISIBILITY]);
-    EXPECT_EQ(found.texels, run_views(context(), {&from, 1}, i)[0].visibility.texels) << i;
+    const passes::HostImage image = read(images.images[ALCOVE_IMAGE_VISIBILITY]);
+    EXPECT_EQ(image.texels, run_views(context(), {&from, 1}, i)[0].visibility.texels) << i;
   }
   engine().wait();
 }

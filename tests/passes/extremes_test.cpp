@@ -80,13 +80,14 @@ TEST_P(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
       const TestView view =
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
-      const std::vector<Images> found = strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
-                                               everything(GetParam(), static_cast<float>(unit)), 3);
-      if (exponent == 0) expected = found;
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        EXPECT_EQ(found[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
-        EXPECT_EQ(found[i].bent_normal.texels, expected[i].bent_normal.texels) << "frame " << i;
-        EXPECT_EQ(found[i].specular.texels, expected[i].specular.texels) << "frame " << i;
+      const std::vector<Images> series =
+          strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
+                 everything(GetParam(), static_cast<float>(unit)), 3);
+      if (exponent == 0) expected = series;
+      for (std::size_t i = 0; i < series.size(); ++i) {
+        EXPECT_EQ(series[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
+        EXPECT_EQ(series[i].bent_normal.texels, expected[i].bent_normal.texels) << "frame " << i;
+        EXPECT_EQ(series[i].specular.texels, expected[i].specular.texels) << "frame " << i;
       }
     }
   }
@@ -101,12 +102,12 @@ TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
     for (const double shift : {0.0, 4.125, 1024.0, -1024.0}) {
       SCOPED_TRACE(testing::Message() << scene.name << " moved by " << shift);
       const TestView view = orthographic_view("", 3.0, 2.0, 0.125 - shift, 16.125 - shift);
-      const std::vector<Images> found =
+      const std::vector<Images> series =
           strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
-      if (shift == 0.0) expected = found;
+      if (shift == 0.0) expected = series;
       // At a distance of 1024 depths are rounded more; the largest difference is .0020.
-      for (std::size_t i = 0; i < found.size(); ++i)
-        EXPECT_LT(rms(found[i].visibility, expected[i].visibility), 0.0025) << "frame " << i;
+      for (std::size_t i = 0; i < series.size(); ++i)
+        EXPECT_LT(rms(series[i].visibility, expected[i].visibility), 0.0025) << "frame " << i;
     }
   }
 }
@@ -176,13 +177,13 @@ TEST_P(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
       for (const bool in_normals : {true, false}) {
         SCOPED_TRACE(testing::Message() << view.name << ": " << wrong
                                         << (in_normals ? " in normals" : " as roughness"));
-        const std::vector<Images> found = frames(wrong, in_normals);
-        for (const Images& images : found) expect_sound(images);
+        const std::vector<Images> series = frames(wrong, in_normals);
+        for (const Images& images : series) expect_sound(images);
         // The wrong values are in one of the five accumulated frames, so that pixels with wrong
         // values may differ a little.
-        EXPECT_LT(rms(found[4].visibility, expected[4].visibility), 2e-3);
-        EXPECT_LT(rms(found[4].bent_normal, expected[4].bent_normal), 4e-3);
-        EXPECT_LT(rms(found[4].specular, expected[4].specular), 4e-3);
+        EXPECT_LT(rms(series[4].visibility, expected[4].visibility), 2e-3);
+        EXPECT_LT(rms(series[4].bent_normal, expected[4].bent_normal), 4e-3);
+        EXPECT_LT(rms(series[4].specular, expected[4].specular), 4e-3);
       }
     }
   }

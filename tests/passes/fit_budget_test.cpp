@@ -60,8 +60,8 @@ using Samples = std::pair<std::uint32_t, std::uint32_t>;  // slices and steps
 
 Samples samples_of(const AlcoveSettings& settings) { return {settings.slices, settings.steps}; }
 
-Samples fitted(const AlcoveBudget& budget, const std::vector<double>& times,
-               AlcoveSettings settings) {
+Samples fit_samples(const AlcoveBudget& budget, const std::vector<double>& times,
+                    AlcoveSettings settings) {
   std::uint32_t changed = 0;
   EXPECT_EQ(alcoveFitBudget(&budget, times.data(), static_cast<std::uint32_t>(times.size()),
                             &settings, &changed),
@@ -100,12 +100,12 @@ TEST(FitBudget, TimesThatScatterDoNotChangeTheSettingsBackAndForth) {
       SCOPED_TRACE(testing::Message() << "scatter " << scatter << ", seed " << seed);
       Simulation view{.scatter = scatter, .random = std::mt19937(seed)};
       view.run(400);
-      const AlcoveSettings settled = view.settings;
+      const AlcoveSettings before = view.settings;
       view.changes = 0;
       view.run(1000);
       // A choice at the edge of what is expected to fit may still be raised once.
       EXPECT_LE(view.changes, 1);
-      EXPECT_GE(view.exact_ms(view.settings), view.exact_ms(settled));
+      EXPECT_GE(view.exact_ms(view.settings), view.exact_ms(before));
       EXPECT_LE(view.exact_ms(view.settings), view.budget.target_ms);
     }
   }
@@ -150,16 +150,16 @@ TEST(FitBudget, NumbersThatAreNoTimesDoNotCount) {
   const AlcoveSettings settings = settings_of(ALCOVE_QUALITY_LOW);
   std::vector<double> times;
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(fitted(kBudget, times, settings), samples_of(settings));
+    EXPECT_EQ(fit_samples(kBudget, times, settings), samples_of(settings));
     times.insert(times.end(), std::begin(kNoTimes), std::end(kNoTimes));
   }
   const std::vector<double> seven(7, 9.0);
-  EXPECT_EQ(fitted(kBudget, seven, settings), samples_of(settings)) << "too few times";
-  const std::vector<double> right(8, 3.0);
-  times.insert(times.end(), right.begin(), right.end());
+  EXPECT_EQ(fit_samples(kBudget, seven, settings), samples_of(settings)) << "too few times";
+  const std::vector<double> eight(8, 3.0);
+  times.insert(times.end(), eight.begin(), eight.end());
   times.insert(times.end(), std::begin(kNoTimes), std::end(kNoTimes));
-  EXPECT_EQ(fitted(kBudget, times, settings), fitted(kBudget, right, settings));
-  EXPECT_NE(fitted(kBudget, right, settings), samples_of(settings));
+  EXPECT_EQ(fit_samples(kBudget, times, settings), fit_samples(kBudget, eight, settings));
+  EXPECT_NE(fit_samples(kBudget, eight, settings), samples_of(settings));
 }
 
 TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
@@ -169,9 +169,10 @@ TEST(FitBudget, SlicesAndStepsStayWithinTheLimits) {
       settings.steps = steps;
       for (const double time : {1e-3, 1.0, 1.9, 2.1, 5.0, 1e6}) {
         const AlcoveBudget budget{sizeof budget, 2.0, 1, most_slices, 5, 20};
-        const auto [slices, fitted_steps] = fitted(budget, std::vector<double>(10, time), settings);
+        const auto [slices, steps_now] =
+            fit_samples(budget, std::vector<double>(10, time), settings);
         EXPECT_TRUE(slices >= 1 && slices <= most_slices) << slices;
-        EXPECT_TRUE(fitted_steps >= 5 && fitted_steps <= 20) << fitted_steps;
+        EXPECT_TRUE(steps_now >= 5 && steps_now <= 20) << steps_now;
       }
     }
   }

@@ -48,11 +48,11 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
     const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, specular);
-    const HostOutputs found = third_frame(invert_normals(drawing), settings);
+    const HostOutputs outputs = third_frame(invert_normals(drawing), settings);
     const HostOutputs expected = third_frame(drawing, settings);
-    EXPECT_LT(rms(found.visibility, expected.visibility), 2e-3);
-    EXPECT_LT(rms(found.bent_normal, expected.bent_normal), 0.02);
-    EXPECT_LT(rms(found.specular, expected.specular), 5e-3);
+    EXPECT_LT(rms(outputs.visibility, expected.visibility), 2e-3);
+    EXPECT_LT(rms(outputs.bent_normal, expected.bent_normal), 0.02);
+    EXPECT_LT(rms(outputs.specular, expected.specular), 5e-3);
   }
 }
 

@@ -44,13 +44,13 @@ struct Difference {
 };
 
 Difference difference(const HostImage& a, const HostImage& b) {
-  Difference found;
+  Difference result;
   for (std::size_t i = 0; i < a.texels.size(); ++i) {
     const double apart = std::abs(a.texels[i] - b.texels[i]);
-    found.mean += apart / static_cast<double>(a.texels.size());
-    found.largest = std::max(found.largest, std::isfinite(apart) ? apart : 1e9);
+    result.mean += apart / static_cast<double>(a.texels.size());
+    result.largest = std::max(result.largest, std::isfinite(apart) ? apart : 1e9);
   }
-  return found;
+  return result;
 }
 
 TEST_F(GtaoInvariance, StandardReversedAndInfiniteDepthBuffersGiveTheSameVisibility) {
@@ -159,10 +159,10 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
     EXPECT_THAT(invalid.visibility.texels,
                 testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
     for (const float component : invalid.bent_normal.texels) ASSERT_TRUE(std::isfinite(component));
-    int changed = 0;
+    int changes = 0;
     for (std::size_t i = 0; i < clean.texels.size(); ++i)
-      changed += std::abs(clean.texels[i] - invalid.visibility.texels[i]) > 0.1f ? 1 : 0;
-    EXPECT_LT(changed, 40) << "of " << clean.texels.size() << " pixels";
+      changes += std::abs(clean.texels[i] - invalid.visibility.texels[i]) > 0.1f ? 1 : 0;
+    EXPECT_LT(changes, 40) << "of " << clean.texels.size() << " pixels";
   }
 }
 

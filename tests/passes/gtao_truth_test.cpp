@@ -70,10 +70,10 @@ double mean_bent_error(const HostImage& bent, const Drawing& drawing, double rad
   int count = 0;
   for (std::uint32_t y = 1; y < bent.height; y += 4) {
     for (std::uint32_t x = 3; x < bent.width; x += 7) {
-      const glm::dvec3 found(bent.at(x, y, 0), bent.at(x, y, 1), bent.at(x, y, 2));
-      EXPECT_NEAR(glm::length(found), 1.0, 1e-3);
+      const glm::dvec3 bent_normal(bent.at(x, y, 0), bent.at(x, y, 1), bent.at(x, y, 2));
+      EXPECT_NEAR(glm::length(bent_normal), 1.0, 1e-3);
       const glm::dvec3 truth = reference_occlusion(drawing, x, y, radius).bent_normal;
-      sum += std::atan2(glm::length(glm::cross(found, truth)), glm::dot(found, truth));
+      sum += std::atan2(glm::length(glm::cross(bent_normal, truth)), glm::dot(bent_normal, truth));
       ++count;
     }
   }
@@ -250,12 +250,12 @@ TEST_F(GtaoTruth, WallCutOffByTheImageBorderOccludesAsIfItWereCompletelyVisible)
       OcclusionSettings settings = exact(estimator, kRadius);
       settings.steps = 12;
       const HostImage truth = render(whole, settings).visibility;
-      const HostImage found = render(part, settings).visibility;
+      const HostImage image = render(part, settings).visibility;
       double sum = 0.0;
       int count = 0;
       for (std::uint32_t y = 10; y < kHeight - 10; ++y)
         for (std::uint32_t x = 82; x < 96; ++x, ++count)
-          sum += std::abs(found.at(x, y) - truth.at(x, y));
+          sum += std::abs(image.at(x, y) - truth.at(x, y));
       return sum / count;
     };
     EXPECT_GT(difference(ALCOVE_ESTIMATOR_HORIZONS), 0.05) << "horizons does not extrapolate";

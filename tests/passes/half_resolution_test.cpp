@@ -29,11 +29,11 @@ TEST(HalfTexelPacking, PackedTexelsOfHalfResolutionFitTheRangeMinusOneToOne) {
   texel.occlusion = 1.0f;
   texel.weight = static_cast<float>(maths::kMaxHistoryFrames);
   texel.tilt = maths::vec2(maths::kLargestTilt, -maths::kLargestTilt);
-  const maths::vec4 packed = maths::pack_half_texel(texel);
-  EXPECT_EQ(packed.x, 1.0f);
-  EXPECT_EQ(packed.y, 127.0f / 128.0f);
-  EXPECT_EQ(packed.z, 1.0f);
-  EXPECT_EQ(packed.w, -1.0f);
+  const maths::vec4 stored = maths::pack_half_texel(texel);
+  EXPECT_EQ(stored.x, 1.0f);
+  EXPECT_EQ(stored.y, 127.0f / 128.0f);
+  EXPECT_EQ(stored.z, 1.0f);
+  EXPECT_EQ(stored.w, -1.0f);
 }
 
 // Returns the recent occlusion of a stored depth, or 0.25 if none is stored.
@@ -43,13 +43,13 @@ float recent_of(float stored) {
 
 TEST(HalfTexelPacking, PackingKeepsInverseDepthAndRecentOcclusionApproximately) {
   for (const float inverse_depth : {1e-12f, 0.013f, 0.7f, 20.0f, 1e12f}) {
-    const float unknown = maths::half_texel_depth(inverse_depth, 0.5f, false);
-    EXPECT_NEAR(unknown / inverse_depth, 1.0, 3.1e-5);
-    EXPECT_EQ(recent_of(unknown), 0.25f);
+    const float depth_alone = maths::half_texel_depth(inverse_depth, 0.5f, false);
+    EXPECT_NEAR(depth_alone / inverse_depth, 1.0, 3.1e-5);
+    EXPECT_EQ(recent_of(depth_alone), 0.25f);
     for (const float recent : {0.0f, 0.01f, 0.37f, 1.0f}) {
-      const float known = maths::half_texel_depth(inverse_depth, recent, true);
-      EXPECT_NEAR(known / inverse_depth, 1.0, 3.1e-5);
-      EXPECT_NEAR(recent_of(known), recent, 0.004);
+      const float depth = maths::half_texel_depth(inverse_depth, recent, true);
+      EXPECT_NEAR(depth / inverse_depth, 1.0, 3.1e-5);
+      EXPECT_NEAR(recent_of(depth), recent, 0.004);
     }
   }
 }
@@ -70,13 +70,13 @@ TEST_F(HalfResolution, ConstantRawOcclusionGivesConstantVisibilityAtOddImageSize
           SCOPED_TRACE(testing::Message()
                        << scene.name << ", tiles of " << tile_size << ", visibility " << visibility
                        << ", history " << history);
-          const HostImage found = reconstruct({.drawing = drawing,
+          const HostImage image = reconstruct({.drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
                                                .tile_size = tile_size,
                                                .index = 1,
                                                .reset = true},
                                               half_resolution(history));
-          expect_pixels(found, visibility == 1.0f ? 1e-6f : kRounding,
+          expect_pixels(image, visibility == 1.0f ? 1e-6f : kRounding,
                         [&](std::uint32_t x, std::uint32_t y) {
                           return drawing.is_sky(x, y) ? 1.0f : visibility;
                         });
@@ -104,14 +104,14 @@ TEST_F(HalfResolution, UpsampledVisibilityDoesNotLeakAcrossADepthEdge) {
         raw_occlusion_of(kWidth / 2, kHeight / 2, [&](std::uint32_t x, std::uint32_t y) {
           return expected(2 * x + offset.x, 2 * y + offset.y);
         });
-    const HostImage found = reconstruct({.drawing = drawing,
+    const HostImage image = reconstruct({.drawing = drawing,
                                          .raw_occlusion = raw_occlusion,
                                          .tile_size = 2,
                                          .index = index,
                                          .reset = true},
                                         half_resolution(16));
     SCOPED_TRACE(index);
-    expect_pixels(found, 0.02, expected);
+    expect_pixels(image, 0.02, expected);
   }
 }
 
@@ -132,14 +132,14 @@ TEST_F(HalfResolution, StaleHistoryTexelsOutsideTheRenderedPartOfAnImageAreNotRe
                      .previous_size = kLargest,
                      .largest_size = kLargest},
                     half_resolution(1));
-  const HostImage found = reconstruct({.drawing = small,
+  const HostImage image = reconstruct({.drawing = small,
                                        .raw_occlusion = bright,
                                        .tile_size = 2,
                                        .index = 1,
                                        .previous_size = kLargest,
                                        .largest_size = kLargest},
                                       half_resolution(1));
-  EXPECT_THAT(found.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
+  EXPECT_THAT(image.texels, testing::Each(testing::FloatNear(0.9f, kRounding)));
 }
 
 }  // namespace

@@ -33,10 +33,10 @@ class HistoryRestart : public PassTest {
 
   void expect_a_new_beginning(const OcclusionSettings& settings,
                               const OcclusionSettings& meanwhile) {
-    const HostOutputs found = come_back(settings, meanwhile, false);
+    const HostOutputs outputs = come_back(settings, meanwhile, false);
     const HostOutputs anew = come_back(settings, meanwhile, true);
-    EXPECT_EQ(found.visibility.texels, anew.visibility.texels);
-    EXPECT_EQ(found.bent_normal.texels, anew.bent_normal.texels);
+    EXPECT_EQ(outputs.visibility.texels, anew.visibility.texels);
+    EXPECT_EQ(outputs.bent_normal.texels, anew.bent_normal.texels);
   }
 };
 

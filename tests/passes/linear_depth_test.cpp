@@ -35,9 +35,9 @@ class LinearDepth : public PassTest {
   // Linear depth of `depth`, a depth buffer that the view's projection wrote.
   HostImage linear_image(const AlcoveCamera& view, const HostImage& depth) {
     run([&](Graph& graph) {
-      const auto made = add_surface(graph, gpu().pipelines(), view, upload(graph, depth));
-      ASSERT_TRUE(made) << made.error().message;
-      read_back(graph, made->linear_depth);
+      const auto surface = add_surface(graph, gpu().pipelines(), view, upload(graph, depth));
+      ASSERT_TRUE(surface) << surface.error().message;
+      read_back(graph, surface->linear_depth);
     });
     return result();
   }

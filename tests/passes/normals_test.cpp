@@ -18,9 +18,9 @@ class NormalsFromDepth : public PassTest {
  protected:
   HostImage normals(const AlcoveCamera& view, const HostImage& depth_ndc) {
     run([&](Graph& graph) {
-      const auto made = add_surface(graph, gpu().pipelines(), view, upload(graph, depth_ndc));
-      ASSERT_TRUE(made) << made.error().message;
-      read_back(graph, made->normals);
+      const auto surface = add_surface(graph, gpu().pipelines(), view, upload(graph, depth_ndc));
+      ASSERT_TRUE(surface) << surface.error().message;
+      read_back(graph, surface->normals);
     });
     return result();
   }

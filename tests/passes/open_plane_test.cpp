@@ -162,9 +162,9 @@ TEST_F(OpenPlane, GrooveKeepsItsOcclusionWith16BitDepth) {
   const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, 0.5f);
   const HostImage expected = frame(drawing, settings, VK_FORMAT_D32_SFLOAT, 0).visibility;
   round_to_16_bits(drawing.depth_ndc);
-  const HostImage found = frame(drawing, settings, VK_FORMAT_D16_UNORM, 0).visibility;
-  EXPECT_LT(rms(found, expected), 0.02);
-  EXPECT_LT(std::ranges::min(found.texels), 0.75f);
+  const HostImage image = frame(drawing, settings, VK_FORMAT_D16_UNORM, 0).visibility;
+  EXPECT_LT(rms(image, expected), 0.02);
+  EXPECT_LT(std::ranges::min(image.texels), 0.75f);
 }
 
 }  // namespace

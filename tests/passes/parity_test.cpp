@@ -24,11 +24,11 @@ TEST_F(CInterface, ShaderFunctionsGiveTheSameValuesOnTheDeviceAndTheCpu) {
   });
   engine().wait();
   image.initial_state = kResting;
-  const HostImage found = read(image);
+  const HostImage values = read(image);
   for (std::uint32_t i = 0; i < 256 * 256; ++i) {
     const glm::vec4 expected = maths::parity_case({i % 256, i / 256});
     for (int k = 0; k < 4; ++k)
-      ASSERT_NEAR(found.texels[i * 4 + k], expected[k], 1e-5f + 1e-5f * std::abs(expected[k]))
+      ASSERT_NEAR(values.texels[i * 4 + k], expected[k], 1e-5f + 1e-5f * std::abs(expected[k]))
           << "texel " << i << ", component " << k;
   }
 }

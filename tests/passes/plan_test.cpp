@@ -48,7 +48,7 @@ class OcclusionPlan : public PassTest {
   FramePlan plan(const OcclusionSettings& settings, OutputChoice choice = {},
                  InputImages images = {}) {
     const Drawing drawing = draw(test_views()[2], 32, 24, groove(0.8));
-    FramePlan found;
+    FramePlan result;
     run([&](Graph& graph) {
       ViewTextures textures{upload(graph, drawing.depth_ndc)};
       if (images.normals) textures[ALCOVE_IMAGE_NORMALS] = upload(graph, drawing.normal_vs);
@@ -63,9 +63,9 @@ class OcclusionPlan : public PassTest {
       if (choice.visibility) read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
       if (choice.bent_normal) read_back(graph, textures[ALCOVE_IMAGE_BENT_NORMAL]);
       if (choice.specular) read_back(graph, textures[ALCOVE_IMAGE_SPECULAR]);
-      found = plan_frame(graph);
+      result = plan_frame(graph);
     });
-    return found;
+    return result;
   }
 };
 

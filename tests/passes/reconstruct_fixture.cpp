@@ -25,15 +25,15 @@ HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
   const maths::vec2 from_ndc = inverse_depth_from_ndc(projection.value());
   const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
-  HostImage packed = raw_occlusion;
-  for (std::uint32_t y = 0; y < packed.height; ++y) {
-    for (std::uint32_t x = 0; x < packed.width; ++x) {
+  HostImage stored = raw_occlusion;
+  for (std::uint32_t y = 0; y < stored.height; ++y) {
+    for (std::uint32_t x = 0; x < stored.width; ++x) {
       const std::uint32_t px = std::min(x * tile_size + interleave_offset.x, depth.width - 1);
       const std::uint32_t py = std::min(y * tile_size + interleave_offset.y, depth.height - 1);
       const float ndc = depth.at(px, py);
       const maths::vec3 normal(drawing.normal_vs.at(px, py, 0), drawing.normal_vs.at(px, py, 1),
                                drawing.normal_vs.at(px, py, 2));
-      float* texel = &packed.texels[(std::size_t{y} * packed.width + x) * 2];
+      float* texel = &stored.texels[(std::size_t{y} * stored.width + x) * 2];
       maths::RawOcclusion sums;
       sums.visible = texel[0];
       sums.open = texel[1];
@@ -43,7 +43,7 @@ HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
                                              is_reversed(projection.value()));
     }
   }
-  return packed;
+  return stored;
 }
 
 // Returns the depths that a buffer of 16 bits would hold.
@@ -56,9 +56,9 @@ HostImage with_16_bits(HostImage depth) {
 
 HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
   run([&](framegraph::Graph& graph) {
-    OcclusionSettings used = settings;
-    used.tile_size = input.tile_size;
-    used.slices = input.slices;
+    OcclusionSettings tile_settings = settings;
+    tile_settings.tile_size = input.tile_size;
+    tile_settings.slices = input.slices;
     if (input.reset) graph.reset_history("visibility history of view 0");
     AlcoveViewInfo info =
         view_info({.view = input.view,
@@ -68,7 +68,7 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                    .largest_size = input.largest_size,
                    .previous_size = input.previous_size,
                    .depth_format = input.coarse_depth ? VK_FORMAT_D16_UNORM : VK_FORMAT_UNDEFINED});
-    info.settings = &used;
+    info.settings = &tile_settings;
     ViewTextures textures{};
     textures[ALCOVE_IMAGE_DEPTH] =
         upload(graph, input.coarse_depth ? with_16_bits(input.drawing.depth_ndc)
@@ -85,13 +85,13 @@ HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& 
                VK_FORMAT_R32G32_UINT);
     add_passes(graph, gpu().pipelines(), info, input.index, textures,
                [&](GraphAdapter& work, const ViewInputs& view) {
-                 const ResourceHandle listed = work.list().add(
+                 const ResourceHandle raw_resource = work.list().add(
                      ALCOVE_RESOURCE_KIND_INPUT, "raw occlusion", VK_FORMAT_R32G32_UINT,
                      {input.raw_occlusion.width, input.raw_occlusion.height});
-                 work.texture(listed) = raw;
-                 const auto described = describe_reconstruct(view, view.image(ALCOVE_IMAGE_DEPTH),
-                                                             {.sums = listed, .bent = {}});
-                 ASSERT_TRUE(described) << described.error().message;
+                 work.texture(raw_resource) = raw;
+                 const auto outcome = describe_reconstruct(view, view.image(ALCOVE_IMAGE_DEPTH),
+                                                           {.sums = raw_resource, .bent = {}});
+                 ASSERT_TRUE(outcome) << outcome.error().message;
                });
     read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
   });

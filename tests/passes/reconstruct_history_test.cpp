@@ -76,21 +76,21 @@ TEST_F(Reconstruct, AccumulatedVisibilityDoesNotDriftOverHundredsOfEqualFrames) 
   for (const float visibility : {0.013f, 0.37f, 0.985f, 1.0f}) {
     SCOPED_TRACE(visibility);
     const HostImage raw_occlusion = constant_raw_occlusion(9, 7, visibility);
-    HostImage found;
+    HostImage image;
     for (std::uint32_t frame = 0; frame < 250; ++frame) {
-      found = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
+      image = reconstruct({.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame},
                           precise(127));
     }
     const auto expect_visibility = [&] {
-      EXPECT_THAT(found.texels,
+      EXPECT_THAT(image.texels,
                   testing::Each(testing::FloatNear(visibility, visibility == 1.0f ? 0.0f : 5e-3f)));
-      EXPECT_NEAR(mean(found), visibility, 1e-3);
+      EXPECT_NEAR(mean(image), visibility, 1e-3);
     };
     expect_visibility();
     // A history with wrong contents returns to the right value within its quantisation step.
     const HostImage wrong = constant_raw_occlusion(9, 7, 1.0f - visibility);
     for (std::uint32_t frame = 0; frame < 130; ++frame) {
-      found = reconstruct(
+      image = reconstruct(
           {.drawing = drawing, .raw_occlusion = frame == 0 ? wrong : raw_occlusion, .index = frame},
           precise(8));
     }

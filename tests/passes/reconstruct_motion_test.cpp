@@ -29,7 +29,7 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
   for (std::uint32_t frame = 0; frame < 8; ++frame) {
     (void)reconstruct({.drawing = first, .raw_occlusion = dark, .index = frame}, precise(32));
   }
-  const HostImage found = reconstruct({.drawing = second,
+  const HostImage image = reconstruct({.drawing = second,
                                        .raw_occlusion = bright,
                                        .view = moved,
                                        .previous_view = view.view,
@@ -57,10 +57,10 @@ TEST_F(Reconstruct, PixelsUncoveredByACameraJumpStartANewHistory) {
       }
       if (std::abs(hit->normal.z) < 0.5) continue;
       if (outside || hidden) {
-        ASSERT_NEAR(found.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
+        ASSERT_NEAR(image.at(x, y), 0.9f, 0.01) << "at " << x << ", " << y;
         ++uncovered_pixels;
       } else if (seen && well_inside) {
-        ASSERT_LT(found.at(x, y), 0.6f) << "at " << x << ", " << y;
+        ASSERT_LT(image.at(x, y), 0.6f) << "at " << x << ", " << y;
         ++visible_pixels;
       }
     }
@@ -79,7 +79,7 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
   view.view.clip_from_view[5] *= zoom;
   const double creep = 0.05 / zoom;  // a third of a pixel
   AlcoveCamera before = view.view;
-  HostImage found;
+  HostImage image;
   HostImage raw_occlusion;
   for (std::uint32_t frame = 0; frame < 12; ++frame) {
     AlcoveCamera now = view.view;
@@ -89,7 +89,7 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
       return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f
                                                                                        : 0.9f;
     });
-    found = reconstruct({.drawing = drawing,
+    image = reconstruct({.drawing = drawing,
                          .raw_occlusion = raw_occlusion,
                          .view = now,
                          .previous_view = before,
@@ -102,7 +102,7 @@ TEST_F(Reconstruct, HistoryOfOneWallDoesNotLeakToAnotherAcrossACrease) {
     for (std::uint32_t x = 0; x < kWidth; ++x) {
       const std::size_t i = std::size_t{y} * kWidth + x;
       worst =
-          std::max<double>(worst, std::abs(found.texels[i] - raw_occlusion.texels[i * 2] /
+          std::max<double>(worst, std::abs(image.texels[i] - raw_occlusion.texels[i * 2] /
                                                                  raw_occlusion.texels[i * 2 + 1]));
     }
   }
@@ -179,11 +179,11 @@ TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
     motion.texels.push_back(0.0f);
   }
   for (const bool with_motion : {true, false}) {
-    HostImage found;
+    HostImage image;
     HostImage raw_occlusion;
     for (std::uint32_t frame = 0; frame < 10; ++frame) {
       raw_occlusion = pattern_at(frame);
-      found = reconstruct({.drawing = drawing,
+      image = reconstruct({.drawing = drawing,
                            .raw_occlusion = raw_occlusion,
                            .motion = with_motion ? &motion : nullptr,
                            .index = frame},
@@ -195,7 +195,7 @@ TEST_F(Reconstruct, MotionVectorsKeepThePatternOfAMovingPlaneSharp) {
     for (std::uint32_t y = 0; y < kHeight; ++y) {
       for (std::uint32_t x = 28; x < kWidth; ++x) {
         const std::size_t i = std::size_t{y} * kWidth + x;
-        error += std::abs(found.texels[i] -
+        error += std::abs(image.texels[i] -
                           raw_occlusion.texels[i * 2] / raw_occlusion.texels[i * 2 + 1]);
         ++count;
       }
@@ -225,23 +225,23 @@ TEST_F(Reconstruct, ApproachingSurfaceKeepsItsHistory) {
   std::mt19937 random(23);
   // Returns the variance over the pixels whose surface has been on the image for many frames.
   const auto spread = [](const HostImage& image) {
-    HostImage right{kWidth / 2, kHeight, {}, 1};
+    HostImage half{kWidth / 2, kHeight, {}, 1};
     for (std::uint32_t y = 0; y < kHeight; ++y)
-      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) right.texels.push_back(image.at(x, y));
-    return variance(right);
+      for (std::uint32_t x = kWidth / 2; x < kWidth; ++x) half.texels.push_back(image.at(x, y));
+    return variance(half);
   };
   double first = 0.0;
   double distance = 5.0;
-  HostImage found;
+  HostImage image;
   for (std::uint32_t frame = 0; frame < frames; ++frame, distance *= nearer) {
     const Drawing drawing = draw_plane(0.0, distance);
     const HostImage raw_occlusion = noise_raw_occlusion(random);
-    found = reconstruct(
+    image = reconstruct(
         {.drawing = drawing, .raw_occlusion = raw_occlusion, .motion = &motion, .index = frame},
         precise(32));
-    first = frame == 0 ? spread(found) : first;
+    first = frame == 0 ? spread(image) : first;
   }
-  EXPECT_LT(spread(found), 0.3 * first);
+  EXPECT_LT(spread(image), 0.3 * first);
 
   const HostImage still = no_motion();
   const Drawing behind = draw_plane(0.0, distance / nearer * 1.02);
@@ -268,25 +268,25 @@ TEST_F(Reconstruct, VisibilityAdaptsWithinTwelveFramesOfAnOccludersMotionIfMotio
     for (const bool with_motion : {true, false}) {
       SCOPED_TRACE(testing::Message()
                    << "half resolution " << half_resolution << ", motion vectors " << with_motion);
-      std::vector<HostImage> found;
+      std::vector<HostImage> images;
       for (std::uint32_t frame = 0; frame < long_ago + 2 * soon; ++frame) {
         const bool is_open = frame >= long_ago && frame < long_ago + soon;
-        found.push_back(reconstruct({.drawing = drawing,
-                                     .raw_occlusion = is_open ? open : shaded,
-                                     .tile_size = tile_size,
-                                     .motion = with_motion ? &motion : nullptr,
-                                     .index = frame},
-                                    settings));
+        images.push_back(reconstruct({.drawing = drawing,
+                                      .raw_occlusion = is_open ? open : shaded,
+                                      .tile_size = tile_size,
+                                      .motion = with_motion ? &motion : nullptr,
+                                      .index = frame},
+                                     settings));
       }
       // The tolerances are wide because recent occlusion is stored in 4 bits, with dithering.
       const auto left = testing::Each(testing::Gt(0.93f));
       const auto back = testing::Each(testing::Lt(0.75f));
-      EXPECT_THAT(found[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
+      EXPECT_THAT(images[long_ago - 1].texels, testing::Each(testing::FloatNear(0.6f, 5e-3f)));
       if (with_motion) {
-        EXPECT_THAT(found[long_ago + soon - 1].texels, left);
-        EXPECT_THAT(found[long_ago + 2 * soon - 1].texels, back);
+        EXPECT_THAT(images[long_ago + soon - 1].texels, left);
+        EXPECT_THAT(images[long_ago + 2 * soon - 1].texels, back);
       } else {
-        EXPECT_THAT(found[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.9f)));
+        EXPECT_THAT(images[long_ago + soon - 1].texels, testing::Each(testing::Lt(0.9f)));
       }
     }
   }

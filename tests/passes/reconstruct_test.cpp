@@ -81,7 +81,7 @@ TEST_F(Reconstruct, PixelWithoutHistoryIsTheWeightedMeanOfTheTracedPixelsAroundI
       for (const std::uint32_t history : {0u, 16u}) {
         SCOPED_TRACE(testing::Message()
                      << "by " << tile_size << ", frame " << index << ", history " << history);
-        const HostImage found = reconstruct({.drawing = drawing,
+        const HostImage image = reconstruct({.drawing = drawing,
                                              .raw_occlusion = raw_occlusion,
                                              .tile_size = tile_size,
                                              .index = index,
@@ -89,7 +89,7 @@ TEST_F(Reconstruct, PixelWithoutHistoryIsTheWeightedMeanOfTheTracedPixelsAroundI
                                             precise(history));
         const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
         // Weights are unoccluded parts, stored with an error of 1/120.
-        expect_pixels(found, 6e-4, [&](std::uint32_t x, std::uint32_t y) {
+        expect_pixels(image, 6e-4, [&](std::uint32_t x, std::uint32_t y) {
           return mean_around(raw_occlusion, x, y, kOddWidth, kOddHeight, tile_size,
                              interleave_offset);
         });
@@ -114,14 +114,14 @@ TEST_F(Reconstruct, ConstantRawOcclusionGivesConstantVisibilityInAnySceneAtAnyTi
         SCOPED_TRACE(testing::Message()
                      << scene.name << " by " << tile_size << ", history " << history);
         for (std::uint32_t frame = 0; frame < (history == 0 ? 1u : 4u); ++frame) {
-          const HostImage found = reconstruct({.drawing = drawing,
+          const HostImage image = reconstruct({.drawing = drawing,
                                                .raw_occlusion = raw_occlusion,
                                                .tile_size = tile_size,
                                                .index = frame},
                                               precise(history));
           // With a history the tolerance is larger, because the history stores its sums in 16
           // bits, and these sums are small if no traced pixel is near.
-          expect_pixels(found, history == 0 ? 1e-4 : 0.02, [&](std::uint32_t x, std::uint32_t y) {
+          expect_pixels(image, history == 0 ? 1e-4 : 0.02, [&](std::uint32_t x, std::uint32_t y) {
             return drawing.is_sky(x, y) ? 1.0f : 0.37f;
           });
         }
@@ -137,11 +137,11 @@ TEST_F(Reconstruct, SpatialFilterReducesNoiseOnATiltedPlane) {
   const HostImage raw_occlusion = noise_raw_occlusion(random);
   for (const double tilt : {0.0, 30.0, 50.0}) {
     const Drawing drawing = draw_plane(tilt);
-    const auto found = [&](std::uint32_t slices) {
+    const auto noise_of = [&](std::uint32_t slices) {
       return variance(reconstruct(
           {.drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices}, precise(0)));
     };
-    EXPECT_LT(found(1), 0.2 * found(8)) << tilt << " degrees";  // 8 slices are not filtered
+    EXPECT_LT(noise_of(1), 0.2 * noise_of(8)) << tilt << " degrees";  // 8 slices are not filtered
   }
 }
 
@@ -152,10 +152,10 @@ TEST_F(Reconstruct, SpatialFilterBlursLessWithMoreSlicesPerPixel) {
       kWidth, kHeight, [](std::uint32_t x, std::uint32_t) { return x % 8 < 4 ? 0.3f : 0.7f; });
   double contrast = 0.0;
   for (const std::uint32_t slices : {1u, 2u, 4u}) {
-    const HostImage found = reconstruct(
+    const HostImage image = reconstruct(
         {.drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices}, precise(0));
-    EXPECT_GT(variance(found), 1.1 * contrast) << slices << " slices";
-    contrast = variance(found);
+    EXPECT_GT(variance(image), 1.1 * contrast) << slices << " slices";
+    contrast = variance(image);
   }
   EXPECT_LT(contrast, 0.04) << "no more than the variance of the unfiltered stripes";
 }
@@ -171,22 +171,22 @@ TEST_F(Reconstruct, LeakOfVisibilityAcrossACreaseDecreasesWithMoreSlicesAndFrame
         return cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5))->normal.x > 0.0 ? 0.2f
                                                                                          : 0.9f;
       });
-  const auto leak = [&](const HostImage& found) {
+  const auto leak = [&](const HostImage& image) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < found.texels.size(); ++i) {
+    for (std::size_t i = 0; i < image.texels.size(); ++i) {
       sum +=
-          std::abs(found.texels[i] - raw_occlusion.texels[i * 2] / raw_occlusion.texels[i * 2 + 1]);
+          std::abs(image.texels[i] - raw_occlusion.texels[i * 2] / raw_occlusion.texels[i * 2 + 1]);
     }
     return sum;
   };
   const auto after = [&](std::uint32_t slices, std::uint32_t frames) {
-    HostImage found;
+    HostImage image;
     for (std::uint32_t frame = 0; frame < frames; ++frame) {
-      found = reconstruct(
+      image = reconstruct(
           {.drawing = drawing, .raw_occlusion = raw_occlusion, .slices = slices, .index = frame},
           precise(64));
     }
-    return leak(found);
+    return leak(image);
   };
   const double first = after(1, 1);
   EXPECT_GT(first, 1.0) << "sum over all pixels";
@@ -203,12 +203,12 @@ TEST_F(Reconstruct, NeighboursWithOtherNormalsGetSmallerFilterWeights) {
   const HostImage raw_occlusion = raw_occlusion_of(
       kWidth, kHeight, [&](std::uint32_t x, std::uint32_t) { return x < half ? 0.9f : 0.2f; });
   const auto leak = [&](double degrees) {
-    const HostImage found = reconstruct({.drawing = rotate_normals(flat, degrees, half),
+    const HostImage image = reconstruct({.drawing = rotate_normals(flat, degrees, half),
                                          .raw_occlusion = raw_occlusion,
                                          .slices = 4,
                                          .reset = true},
                                         precise(0));
-    return 0.9 - found.at(half - 1, kHeight / 2);
+    return 0.9 - image.at(half - 1, kHeight / 2);
   };
   EXPECT_GT(leak(0.0), 0.1);
   EXPECT_LT(leak(60.0), 0.5 * leak(0.0));
@@ -232,16 +232,16 @@ TEST_F(Reconstruct, NormalsOfAPlaneAreReadOnlyIfTheDepthBufferIsTooCoarseForItsT
     AlcoveCamera before = view.view;
     before.view_from_world[12] += 1e-6f;
     const auto last_frame = [&](const Drawing& last, bool coarse) {
-      HostImage found;
+      HostImage image;
       for (std::uint32_t frame = 0; frame < 8; ++frame)
-        found = reconstruct({.drawing = frame == 7 ? last : drawing,
+        image = reconstruct({.drawing = frame == 7 ? last : drawing,
                              .raw_occlusion = raw_occlusion,
                              .tile_size = 4,
                              .previous_view = before,
                              .index = frame,
                              .coarse_depth = coarse},
                             precise(16));
-      return found;
+      return image;
     };
     for (const bool coarse : {false, true}) {
       const HostImage plain = last_frame(drawing, coarse);
@@ -271,13 +271,13 @@ TEST_F(Reconstruct, VisibilityDoesNotLeakAcrossADepthEdge) {
     for (const std::uint32_t history : {0u, 16u}) {
       SCOPED_TRACE(testing::Message() << view.name << ", history " << history);
       for (std::uint32_t frame = 0; frame < 4; ++frame) {
-        const HostImage found = reconstruct(
+        const HostImage image = reconstruct(
             {.drawing = drawing, .raw_occlusion = raw_occlusion, .index = frame}, precise(history));
         for (std::uint32_t y = 0; y < kHeight; ++y) {
           for (std::uint32_t x = 0; x < kWidth; ++x) {
             const auto hit = cast(drawing.scene, drawing.camera.ray(x + 0.5, y + 0.5));
             if (std::abs(hit->normal.z) > 0.5) {  // the hit is not on the platform's wall
-              ASSERT_NEAR(found.at(x, y), on_platform(x, y) ? 0.9f : 0.2f, 0.01)
+              ASSERT_NEAR(image.at(x, y), on_platform(x, y) ? 0.9f : 0.2f, 0.01)
                   << "at " << x << ", " << y;
             }
           }

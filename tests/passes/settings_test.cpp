@@ -27,7 +27,7 @@ AlcoveSettings preset(AlcoveQuality quality = ALCOVE_QUALITY_MEDIUM) {
   return settings;
 }
 
-std::string printed(const AlcoveSettings& settings) {
+std::string print(const AlcoveSettings& settings) {
   std::string text(alcovePrintSettings(&settings, nullptr, 0) + 1, '\0');
   text.resize(alcovePrintSettings(&settings, text.data(), text.size()));
   return text;
@@ -84,9 +84,9 @@ std::string error_of(const SettingInfo& info, Value value) {
 
 template <typename Value>
 void expect_refused(const SettingInfo& info, Value value, const std::string& allowed) {
-  const std::string said = error_of(info, value);
-  EXPECT_THAT(said, StartsWith("The setting '" + std::string(info.name) + "' is "));
-  EXPECT_THAT(said, HasSubstr("; it must be " + allowed + "."));
+  const std::string sentence = error_of(info, value);
+  EXPECT_THAT(sentence, StartsWith("The setting '" + std::string(info.name) + "' is "));
+  EXPECT_THAT(sentence, HasSubstr("; it must be " + allowed + "."));
 }
 
 TEST(Settings, ValidationEnforcesExactlyTheStatedRangeOfEachSetting) {
@@ -131,33 +131,33 @@ TEST(Settings, RangeTextsStateMinimumAndMaximumInWords) {
 // Each printed value reads back as the same number.
 TEST(Settings, EverySettingIsPrintedShortAndReadBackInEveryLocale) {
   const CommaLocale comma;
-  AlcoveSettings wanted = preset(ALCOVE_QUALITY_ULTRA);
-  wanted.thickness = 0.12345678f;
-  wanted.hidden_occlusion = 1e-7f;
+  AlcoveSettings expected = preset(ALCOVE_QUALITY_ULTRA);
+  expected.thickness = 0.12345678f;
+  expected.hidden_occlusion = 1e-7f;
   for (const SettingInfo& info : setting_table()) {
     SCOPED_TRACE(info.name);
     if (info.kind == Kind::choice)
-      set_setting(wanted, info, static_cast<std::uint32_t>(info.choices.size()) - 1);
-    AlcoveSettings found = preset(ALCOVE_QUALITY_LOW);
-    EXPECT_EQ(read(printed(wanted), found), "");
-    EXPECT_EQ(std::memcmp(&found, &wanted, sizeof found), 0);
+      set_setting(expected, info, static_cast<std::uint32_t>(info.choices.size()) - 1);
+    AlcoveSettings settings = preset(ALCOVE_QUALITY_LOW);
+    EXPECT_EQ(read(print(expected), settings), "");
+    EXPECT_EQ(std::memcmp(&settings, &expected, sizeof settings), 0);
   }
-  const std::string text = printed(wanted);
+  const std::string text = print(expected);
   EXPECT_THAT(text, StartsWith("radius = 0.7\ntile_size = 2\n"));
   for (const char* line : {"\nthickness = 0.12345678\n", "\nhidden_occlusion = 1e-07\n"})
     EXPECT_THAT(text, HasSubstr(line));
   char little[8];
-  EXPECT_EQ(alcovePrintSettings(&wanted, little, sizeof little), text.size());
+  EXPECT_EQ(alcovePrintSettings(&expected, little, sizeof little), text.size());
   EXPECT_EQ(std::string(little), text.substr(0, 7));
 }
 
 TEST(Settings, OnlyNamedSettingsAreChanged) {
-  AlcoveSettings found = preset(), expected = preset();
-  EXPECT_EQ(read("", found), "");
-  EXPECT_EQ(read("\n  steps=9 \r\n\n\tstatic_noise = true", found), "");
+  AlcoveSettings settings = preset(), expected = preset();
+  EXPECT_EQ(read("", settings), "");
+  EXPECT_EQ(read("\n  steps=9 \r\n\n\tstatic_noise = true", settings), "");
   expected.steps = 9;
   expected.static_noise = 1;
-  EXPECT_EQ(printed(found), printed(expected));
+  EXPECT_EQ(print(settings), print(expected));
 }
 
 TEST(Settings, TextThatCannotBeReadIsReportedInASentenceAndChangesNothing) {
@@ -181,20 +181,20 @@ TEST(Settings, TextThatCannotBeReadIsReportedInASentenceAndChangesNothing) {
       {"slices = 3\ntile_size = 1\nhalf_resolution = true", "tile_size of 1"},
   };
   for (const auto& [text, part] : cases) {
-    AlcoveSettings found = preset();
-    const std::string said = read(text, found);
-    EXPECT_THAT(said, HasSubstr(part));
-    EXPECT_THAT(said, EndsWith("."));
-    EXPECT_EQ(printed(found), printed(preset()));
+    AlcoveSettings settings = preset();
+    const std::string sentence = read(text, settings);
+    EXPECT_THAT(sentence, HasSubstr(part));
+    EXPECT_THAT(sentence, EndsWith("."));
+    EXPECT_EQ(print(settings), print(preset()));
   }
   std::mt19937 random(7);
   for (int i = 0; i < 2000; ++i) {
-    std::string text = printed(preset(ALCOVE_QUALITY_CONSOLE));
+    std::string text = print(preset(ALCOVE_QUALITY_CONSOLE));
     for (int change = 0; change < 3; ++change)
       text[random() % text.size()] = static_cast<char>(random());
-    AlcoveSettings found = preset();
-    if (!read(text, found).empty()) {
-      EXPECT_EQ(printed(found), printed(preset()));
+    AlcoveSettings settings = preset();
+    if (!read(text, settings).empty()) {
+      EXPECT_EQ(print(settings), print(preset()));
     }
   }
 }
@@ -210,7 +210,7 @@ TEST(Settings, MissingArgumentsAndUnknownSizesAreErrors) {
   EXPECT_EQ(alcoveGetSettings(static_cast<AlcoveQuality>(kQualityNames.size()), 1.0f, &settings),
             ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, nullptr), ALCOVE_ERROR_INVALID_INPUT);
-  EXPECT_EQ(printed(settings), printed(preset()));
+  EXPECT_EQ(print(settings), print(preset()));
   settings.struct_size = 12;
   EXPECT_EQ(alcoveGetSettings(ALCOVE_QUALITY_LOW, 1.0f, &settings), ALCOVE_ERROR_INVALID_INPUT);
   EXPECT_THAT(read("", settings), HasSubstr("AlcoveSettings::struct_size is 12"));

@@ -26,13 +26,13 @@ std::vector<Shader> all_shaders() {
 }
 
 TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslFile) {
-  const ShaderInterface& found = shader_interface(Shader::gtso);
+  const ShaderInterface& description = shader_interface(Shader::gtso);
   std::vector<std::string> bindings, constants;
-  for (const ShaderBinding& binding : found.bindings) {
+  for (const ShaderBinding& binding : description.bindings) {
     bindings.push_back(std::to_string(binding.number) + " " + std::string(binding.name) + " " +
                        std::to_string(binding.type));
   }
-  for (const ShaderConstant& constant : found.constants)
+  for (const ShaderConstant& constant : description.constants)
     constants.push_back(std::to_string(constant.id) + " " + std::string(constant.name));
   // The blocks have no instance name.
   const std::string sampled = std::to_string(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE);
@@ -94,17 +94,17 @@ TEST(ShaderInterface, ModulesHaveNoInstructionThatWebGpuLacks) {
 TEST(ShaderInterface, EveryShaderHasUniqueBindingNumbersAndOneParameterBlock) {
   for (const Shader shader : all_shaders()) {
     SCOPED_TRACE(shader_source(shader).name);
-    const ShaderInterface& found = shader_interface(shader);
-    EXPECT_LE(found.bindings.size(), kMaxBindings);
-    EXPECT_LE(found.constants.size(), std::size_t{ALCOVE_MAX_WORK_CONSTANTS});
+    const ShaderInterface& description = shader_interface(shader);
+    EXPECT_LE(description.bindings.size(), kMaxBindings);
+    EXPECT_LE(description.constants.size(), std::size_t{ALCOVE_MAX_WORK_CONSTANTS});
     std::set<std::uint32_t> numbers, ids;
     std::size_t parameter_blocks = 0, tables = 0;
-    for (const ShaderBinding& binding : found.bindings) {
+    for (const ShaderBinding& binding : description.bindings) {
       EXPECT_TRUE(numbers.insert(binding.number).second) << binding.name;
       parameter_blocks += binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ? 1 : 0;
       tables += binding.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ? 1 : 0;
     }
-    for (const ShaderConstant& constant : found.constants) {
+    for (const ShaderConstant& constant : description.constants) {
       EXPECT_TRUE(ids.insert(constant.id).second) << constant.name;
       EXPECT_THAT(std::string(constant.name), testing::StartsWith("k"));
     }

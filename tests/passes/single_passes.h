@@ -12,8 +12,8 @@ template <typename Describe>
 void add_passes(framegraph::Graph& graph, Pipelines& pipelines, const AlcoveViewInfo& info,
                 std::uint32_t index, ViewTextures& textures, const Describe& describe) {
   GraphAdapter work(graph, pipelines, info.id);
-  const AlcoveWorkInfo described = work_info(graph, info, index, textures);
-  const auto view = begin_view(work.list(), described);
+  const AlcoveWorkInfo view_work = work_info(graph, info, index, textures);
+  const auto view = begin_view(work.list(), view_work);
   ASSERT_TRUE(view) << view.error().message;
   for (std::size_t role = 0; role < textures.size(); ++role)
     if (textures[role]) work.texture(view->images[role]) = textures[role];

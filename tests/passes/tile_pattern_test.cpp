@@ -51,9 +51,9 @@ TEST_F(TilePattern, TilesDoNotShowInTheFirstFramesOfAHistory) {
     const OcclusionSettings settings(limit.quality, 2.0f);
     for (std::uint32_t index = 0; index < limit.pattern.size(); ++index) {
       SCOPED_TRACE(testing::Message() << "quality " << limit.quality << ", frame " << index);
-      const HostImage found = render(drawing, settings, index).visibility;
+      const HostImage image = render(drawing, settings, index).visibility;
       const auto means = means_by_position(2 * settings.tile_size, [&](auto x, auto y) {
-        return double{found.at(x, y)} - smooth.at(x, y);
+        return double{image.at(x, y)} - smooth.at(x, y);
       });
       double mean = 0.0, square = 0.0;
       for (const double value : means) mean += value / static_cast<double>(means.size());
@@ -61,7 +61,7 @@ TEST_F(TilePattern, TilesDoNotShowInTheFirstFramesOfAHistory) {
         square += std::pow(value - mean, 2.0) / static_cast<double>(means.size());
       EXPECT_LT(std::sqrt(square), limit.pattern[index]);
       const auto squared_steps = means_by_position(settings.tile_size, [&](auto x, auto y) {
-        return std::pow(double{found.at(x, y)} - found.at(std::max(x, 1u) - 1, y), 2.0);
+        return std::pow(double{image.at(x, y)} - image.at(std::max(x, 1u) - 1, y), 2.0);
       });
       EXPECT_LT(std::sqrt(std::ranges::max(squared_steps)), limit.step);
     }

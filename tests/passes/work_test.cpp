@@ -159,11 +159,11 @@ class WorkOfView : public testing::Test {
     image(ALCOVE_IMAGE_VISIBILITY) = {VK_FORMAT_R8_UNORM, 64, 48};
   }
   Description describe() const {
-    Description made;
+    Description description;
     char message[ALCOVE_MAX_MESSAGE];
-    made.result = alcoveDescribeWork(&info_, made.work.get(), message);
-    made.message = message;
-    return made;
+    description.result = alcoveDescribeWork(&info_, description.work.get(), message);
+    description.message = message;
+    return description;
   }
 
   AlcoveSettings settings_{.struct_size = sizeof(AlcoveSettings)};
@@ -173,34 +173,35 @@ class WorkOfView : public testing::Test {
 };
 
 TEST_F(WorkOfView, TransientsLiveFromTheDispatchThatWritesThemToTheLastThatReadsThem) {
-  const Description made = describe();
-  ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
-  ASSERT_EQ(made.work->dispatch_count, 2u);
+  const Description description = describe();
+  ASSERT_EQ(description.result, ALCOVE_SUCCESS) << description.message;
+  ASSERT_EQ(description.work->dispatch_count, 2u);
   const AlcoveWorkResource* const raw = std::ranges::find(
-      made.work->resources, std::string_view("raw occlusion"), &AlcoveWorkResource::name);
+      description.work->resources, std::string_view("raw occlusion"), &AlcoveWorkResource::name);
   EXPECT_EQ(raw->kind, ALCOVE_RESOURCE_KIND_TRANSIENT);
   EXPECT_EQ(raw->first_dispatch, 0u);
   EXPECT_EQ(raw->last_dispatch, 1u);
   EXPECT_EQ(raw->size, 16u * 12u * 8u);
-  EXPECT_EQ(made.work->dispatches[0].groups[0], 2u);
+  EXPECT_EQ(description.work->dispatches[0].groups[0], 2u);
 }
 
 TEST_F(WorkOfView, LargestTilesSearchACopyOfEverySecondPixelOfDepth) {
-  const auto searched = [&](std::uint32_t tile_size) -> std::string_view {
+  const auto search_image_of = [&](std::uint32_t tile_size) -> std::string_view {
     settings_.tile_size = tile_size;
-    const Description made = describe();
-    EXPECT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
-    const AlcoveWorkDispatch& search = made.work->dispatches[made.work->dispatch_count - 2];
+    const Description description = describe();
+    EXPECT_EQ(description.result, ALCOVE_SUCCESS) << description.message;
+    const AlcoveWorkDispatch& search =
+        description.work->dispatches[description.work->dispatch_count - 2];
     EXPECT_STREQ(search.label, "gtao");
     const AlcoveWorkBinding* const image = std::ranges::find(
         search.bindings, std::string_view("search_image"), &AlcoveWorkBinding::name);
-    return made.work->resources[image->resource].name;
+    return description.work->resources[image->resource].name;
   };
-  EXPECT_EQ(searched(8), "half depth");
-  EXPECT_EQ(searched(4), "depth");
+  EXPECT_EQ(search_image_of(8), "half depth");
+  EXPECT_EQ(search_image_of(4), "depth");
   settings_.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   image(ALCOVE_IMAGE_BACK_DEPTH) = image(ALCOVE_IMAGE_DEPTH);
-  EXPECT_EQ(searched(8), "depth");
+  EXPECT_EQ(search_image_of(8), "depth");
 }
 
 TEST_F(WorkOfView, HistoryContinuesOnlyFromAListWithTheSameHistories) {
@@ -232,10 +233,10 @@ TEST_F(WorkOfView, ListThatWasNeverFilledIsRefusedAsThePreviousOne) {
 // without.
 TEST_F(WorkOfView, EveryPipelineOfEveryFrameIsListed) {
   const auto is_listed = [&](const AlcoveWorkDispatch& dispatch) {
-    std::array<AlcoveWorkPipeline, ALCOVE_MAX_WORK_PIPELINES> listed{};
-    std::uint32_t count = listed.size();
-    EXPECT_EQ(alcoveListPipelines(&info_, &count, listed.data(), nullptr), ALCOVE_SUCCESS);
-    return std::any_of(listed.begin(), listed.begin() + count, [&](const auto& pipeline) {
+    std::array<AlcoveWorkPipeline, ALCOVE_MAX_WORK_PIPELINES> pipelines{};
+    std::uint32_t count = pipelines.size();
+    EXPECT_EQ(alcoveListPipelines(&info_, &count, pipelines.data(), nullptr), ALCOVE_SUCCESS);
+    return std::any_of(pipelines.begin(), pipelines.begin() + count, [&](const auto& pipeline) {
       return std::string_view(pipeline.shader) == dispatch.shader &&
              std::ranges::equal(std::span(pipeline.constants).first(pipeline.constant_count),
                                 std::span(dispatch.constants).first(dispatch.constant_count), {},
@@ -280,9 +281,9 @@ TEST_F(WorkOfView, EveryPipelineOfEveryFrameIsListed) {
 TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime) {
   image(ALCOVE_IMAGE_SPECULAR) = image(ALCOVE_IMAGE_VISIBILITY);
   settings_.specular = ALCOVE_SPECULAR_TABLE;
-  const Description made = describe();
-  ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
-  const AlcoveWork& work = *made.work;
+  const Description description = describe();
+  ASSERT_EQ(description.result, ALCOVE_SUCCESS) << description.message;
+  const AlcoveWork& work = *description.work;
   for (std::uint32_t i = 0; i < work.dispatch_count; ++i) {
     for (std::uint32_t b = 0; b < work.dispatches[i].binding_count; ++b) {
       const AlcoveWorkBinding& binding = work.dispatches[i].bindings[b];
@@ -307,33 +308,33 @@ TEST_F(WorkOfView, EveryBindingHasAResourceOfItsTypeAndEveryResourceItsLifetime)
 // images.
 TEST_F(WorkOfView, ImageThatADispatchWritesIsBoundOnceAndVisibilityNeedsAtMostFourStorageImages) {
   for (std::uint32_t choice = 0; choice < 32; ++choice) {
-    const auto chosen = [&](std::uint32_t bit, VkFormat format) {
+    const auto image_if = [&](std::uint32_t bit, VkFormat format) {
       return (choice & bit) != 0 ? AlcoveWorkImage{static_cast<std::uint32_t>(format), 64, 48}
                                  : AlcoveWorkImage{};
     };
-    image(ALCOVE_IMAGE_VISIBILITY) = chosen(1, VK_FORMAT_R8_UNORM);
-    image(ALCOVE_IMAGE_BENT_NORMAL) = chosen(2, VK_FORMAT_R8G8B8A8_SNORM);
-    image(ALCOVE_IMAGE_SPECULAR) = chosen(4, VK_FORMAT_R8_UNORM);
+    image(ALCOVE_IMAGE_VISIBILITY) = image_if(1, VK_FORMAT_R8_UNORM);
+    image(ALCOVE_IMAGE_BENT_NORMAL) = image_if(2, VK_FORMAT_R8G8B8A8_SNORM);
+    image(ALCOVE_IMAGE_SPECULAR) = image_if(4, VK_FORMAT_R8_UNORM);
     settings_.specular = ALCOVE_SPECULAR_SLICES;
     settings_.half_resolution = (choice & 8) != 0 ? 1 : 0;
     settings_.history_frames = (choice & 16) != 0 ? 32 : 0;
-    const Description made = describe();
+    const Description description = describe();
     if ((choice & 7) == 0) continue;  // a view without an output is an error
-    ASSERT_EQ(made.result, ALCOVE_SUCCESS) << made.message;
+    ASSERT_EQ(description.result, ALCOVE_SUCCESS) << description.message;
     for (const AlcoveWorkDispatch& dispatch :
-         std::span(made.work->dispatches).first(made.work->dispatch_count)) {
+         std::span(description.work->dispatches).first(description.work->dispatch_count)) {
       SCOPED_TRACE(testing::Message() << dispatch.label << ", choice " << choice);
       std::map<std::uint32_t, std::uint32_t> bindings;  // of each resource
-      std::uint32_t written = 0;
+      std::uint32_t storage_images = 0;
       const auto all = std::span(dispatch.bindings).first(dispatch.binding_count);
       for (const AlcoveWorkBinding& binding : all) ++bindings[binding.resource];
       for (const AlcoveWorkBinding& binding : all) {
         if (binding.type != ALCOVE_BINDING_TYPE_STORAGE_IMAGE) continue;
         EXPECT_EQ(bindings[binding.resource], 1u) << binding.name;
-        ++written;
+        ++storage_images;
       }
       if ((choice & 7) == 1) {
-        EXPECT_LE(written, 4u);
+        EXPECT_LE(storage_images, 4u);
       }
     }
   }
@@ -354,9 +355,9 @@ TEST_F(WorkOfView, InvalidInputIsASentence) {
 }
 
 TEST_F(WorkOfView, PrintedListNamesResourcesShadersConstantsAndHistories) {
-  const Description made = describe();
-  std::string text(alcovePrintWork(made.work.get(), nullptr, 0) + 1, '\0');
-  alcovePrintWork(made.work.get(), text.data(), text.size());
+  const Description description = describe();
+  std::string text(alcovePrintWork(description.work.get(), nullptr, 0) + 1, '\0');
+  alcovePrintWork(description.work.get(), text.data(), text.size());
   EXPECT_THAT(text, HasSubstr("raw occlusion: transient, VK_FORMAT_R32G32_UINT, 16x12"));
   EXPECT_THAT(text, HasSubstr("0 gtao: shader gtao, 2x2x1 groups"));
   EXPECT_THAT(text, HasSubstr("kSliceCount=2"));

@@ -32,22 +32,22 @@ function createBuffer(bytes, usage) {
 }
 
 // Returns the texture or buffer of a resource. The two textures of a history change places.
-const made = new Map();
-function find(resource, index, frame) {
+const objects = new Map();
+function objectOf(resource, index, frame) {
   const { name, kind, role, size, format, data } = resource;
   const slot = kind === HISTORY_PREVIOUS ? index + 1 : kind === HISTORY_CURRENT ? index : 0;
   const key = [name, format, size, slot % 2].join();
-  if (made.has(key)) return made.get(key);
+  if (objects.has(key)) return objects.get(key);
   const host = kind === INPUT ? inputs[role] : kind === OUTPUT ? frame.results[role] : undefined;
   const { TEXTURE_BINDING, STORAGE_BINDING, COPY_SRC, COPY_DST } = GPUTextureUsage;
-  made.set(key, kind === BUFFER ? createBuffer(data, GPUBufferUsage.STORAGE) : device.createTexture({
+  objects.set(key, kind === BUFFER ? createBuffer(data, GPUBufferUsage.STORAGE) : device.createTexture({
     size, format: host ? floats[channelsOf(resource, host)] : formats[format],
     usage: TEXTURE_BINDING | STORAGE_BINDING | COPY_SRC | COPY_DST
   }));
   if (kind === INPUT)
-    device.queue.writeTexture({ texture: made.get(key) }, new Float32Array(host),
+    device.queue.writeTexture({ texture: objects.get(key) }, new Float32Array(host),
                               { bytesPerRow: size[0] * channelsOf(resource, host) * 4 }, size);
-  return made.get(key);
+  return objects.get(key);
 }
 
 const pipelines = new Map();
@@ -89,13 +89,13 @@ async function read(texture, channels) {
 
 const sampler = device.createSampler();
 for (const [index, frame] of frames.entries()) {
-  const found = frame.resources.map(resource => find(resource, index, frame));
+  const frameObjects = frame.resources.map(resource => objectOf(resource, index, frame));
   const encoder = device.createCommandEncoder();
   const pass = encoder.beginComputePass();
   for (const dispatch of frame.dispatches) {
     const parameters = createBuffer(dispatch.parameters, GPUBufferUsage.UNIFORM);
     const bound = dispatch.bindings.map(({ type, resource }) =>
-        type === PARAMETERS ? parameters : type === SAMPLER ? sampler : found[resource]);
+        type === PARAMETERS ? parameters : type === SAMPLER ? sampler : frameObjects[resource]);
     const pipeline = pipelineOf(dispatch, bound);
     pass.setPipeline(pipeline);
     pass.setBindGroup(0, device.createBindGroup({
@@ -111,7 +111,7 @@ for (const [index, frame] of frames.entries()) {
     if (resource.kind !== OUTPUT) continue;
     const expected = frame.results[resource.role];
     const stepsPerUnit = expected.some(value => value < 0) ? 255 / 2 : 255;  // bent normals: -1 to 1
-    const steps = (await read(found[i], channelsOf(resource, expected)))
+    const steps = (await read(frameObjects[i], channelsOf(resource, expected)))
         .map((value, k) => Math.abs(value - expected[k]) * stepsPerUnit);
     const differing = steps.filter(step => !(step <= 1)).length;
     const largest = steps.reduce((a, b) => b > a || Number.isNaN(b) ? b : a);

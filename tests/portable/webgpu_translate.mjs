@@ -30,12 +30,12 @@ function freeze(folder, shader, constants) {
 
 // Writes formats, by binding, into the types of the storage images of a disassembled module.
 function writeFormats(text, formatOf) {
-  const find = pattern => [...text.matchAll(pattern)].map(match => match.slice(1));
-  const binding = new Map(find(/OpDecorate (%\d+) Binding (\d+)/g));
-  const images = new Map(find(/(%\d+) = (OpTypeImage %\d+ 2D 0 0 0 2) Unknown/g));
-  const pointers = new Map(find(/(%\d+) = OpTypePointer UniformConstant (%\d+)/g)
+  const groupsOf = pattern => [...text.matchAll(pattern)].map(match => match.slice(1));
+  const binding = new Map(groupsOf(/OpDecorate (%\d+) Binding (\d+)/g));
+  const images = new Map(groupsOf(/(%\d+) = (OpTypeImage %\d+ 2D 0 0 0 2) Unknown/g));
+  const pointers = new Map(groupsOf(/(%\d+) = OpTypePointer UniformConstant (%\d+)/g)
       .filter(([, image]) => images.has(image)));
-  const variables = find(/(%\d+) = OpVariable (%\d+) UniformConstant/g)
+  const variables = groupsOf(/(%\d+) = OpVariable (%\d+) UniformConstant/g)
       .filter(([, pointer]) => pointers.has(pointer))
       .map(([id, pointer]) => ({ id, pointer, format: spirvFormat(formatOf[binding.get(id)]) }));
   const typesFor = pointer => [...new Set(variables.filter(variable => variable.pointer === pointer)
