@@ -25,8 +25,6 @@ constexpr VkImageUsageFlags kDepthUsage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMEN
 constexpr VkImageUsageFlags kColourUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                            VK_IMAGE_USAGE_SAMPLED_BIT |
                                            VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-constexpr VkImageUsageFlags kFilledUsage =
-    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 constexpr VkImageUsageFlags kVisibilityUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 
@@ -41,15 +39,9 @@ AlcoveCamera to_camera(const CameraMatrices& matrices, const glm::vec3& origin) 
 
 // Imports an image that the frame fills.
 Texture import(Graph& graph, const AlcoveImage& image) {
-  const framegraph::State resting{image.final_state.stages, image.final_state.access,
-                                  image.final_state.layout};
-  return graph.import_texture(
-      "image of the engine",
-      {.image = image.image,
-       .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-       .usage = image.usage,
-       .initial_state = {resting.stages, 0, VK_IMAGE_LAYOUT_UNDEFINED},
-       .final_state = resting});
+  framegraph::ImportedTexture texture = passes::import_of(image);
+  texture.initial_state = {texture.final_state.stages, 0, VK_IMAGE_LAYOUT_UNDEFINED};
+  return graph.import_texture("image of the engine", texture);
 }
 
 }  // namespace
@@ -57,9 +49,7 @@ Texture import(Graph& graph, const AlcoveImage& image) {
 template <typename Texel>
 AlcoveImage EngineRun::create_filled(VkFormat format, VkExtent2D size,
                                      const std::vector<Texel>& texels) {
-  const AlcoveImage image = device_.make_image(format, size.width, size.height, kFilledUsage);
-  device_.write(image, std::as_bytes(std::span(texels)));
-  return image;
+  return device_.make_filled(format, size.width, size.height, std::as_bytes(std::span(texels)));
 }
 
 template <typename Texel>

@@ -163,7 +163,7 @@ TEST(VisibilityBitmask, VisibilityEndsAtTheFirstOccludedSectorIfVolumeBehindOccl
     // Near the view direction, a cosine stored as a float determines the angle only with an error
     // of sqrt(2^-23).
     EXPECT_NEAR(part_of(s, side, maths::repeat_last_sector(1u << first), 1.0f).arc,
-                maths::slice_arc(s, side, horizon), 5e-4f);
+                slice_arc(s, side, horizon), 5e-4f);
   }
 }
 

@@ -36,36 +36,22 @@ HostImage part_of(const HostImage& image, const AlcoveArea& area) {
   return part;
 }
 
-struct Case {
-  const char* name;
-  AlcoveQuality quality;
-  void (*change)(HostView& view) = [](HostView&) {};
-};
-std::ostream& operator<<(std::ostream& out, const Case& of) { return out << of.name; }
-
-class CAreas : public CInterface, public testing::WithParamInterface<Case> {
+class CAreas : public CInterface, public testing::WithParamInterface<PresetCase> {
  protected:
   static HostView create_host_view(std::uint32_t width, std::uint32_t height, const Scene& scene) {
-    HostView view = draw_view(width, height, scene);
-    const OcclusionSettings defaults = view.settings;
+    HostView view = draw_view(width, height, scene, 1.5f, GetParam());
     view.id = width;
-    view.settings = OcclusionSettings(GetParam().quality, 1.5f);
-    view.settings.precision = defaults.precision;
-    view.settings.roughness_channel = defaults.roughness_channel;
-    GetParam().change(view);
+    view.settings.precision = ALCOVE_PRECISION_FLOAT32;
     return view;
   }
 
   // Creates an output whose pixels have the value kPoison.
   AlcoveImage create_poisoned(const AlcoveImage& like) {
     if (like.image == VK_NULL_HANDLE) return {};
-    const AlcoveImage image = engine().make_image(like.format, kSheet.width, kSheet.height,
-                                                  like.usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    HostImage contents{
-        kSheet.width, kSheet.height, {}, like.format == VK_FORMAT_R32_SFLOAT ? 1u : 4u};
-    contents.texels.assign(std::size_t{kSheet.width} * kSheet.height * contents.channels, kPoison);
-    engine().write(image, std::as_bytes(std::span(contents.texels)));
-    return image;
+    const std::size_t channels = like.format == VK_FORMAT_R32_SFLOAT ? 1 : 4;
+    const std::vector<float> texels(kSheet.width * kSheet.height * channels, kPoison);
+    return engine().make_filled(like.format, kSheet.width, kSheet.height,
+                                std::as_bytes(std::span(texels)), like.usage);
   }
 
   void run_sheet(bool band);
@@ -86,8 +72,7 @@ void CAreas::run_sheet(bool band) {
                                  own[i].images[ALCOVE_IMAGE_DEPTH].height};
       if (band) own[i].info.written_area = without_band(own[i].info.read_area);
     }
-    run_frame(context(), own, index);
-    engine().wait();
+    const std::vector<HostOutputs> expected = run_views(context(), own, index);
     for (std::size_t i = 0; i < 2; ++i) {
       const Placement& place = kPlacements.at(i);
       shared[i] = own[i];
@@ -107,21 +92,18 @@ void CAreas::run_sheet(bool band) {
     for (const OutputMember& each : kOutputs)
       shared[0].images[each.role] = shared[1].images[each.role] =
           create_poisoned(own[0].images[each.role]);
-    run_frame(context(), shared, index);
-    engine().wait();
-    const HostOutputs outputs = read_results(shared[0]);
+    const HostOutputs outputs = run_views(context(), shared, index)[0];
     HostOutputs rest = outputs;
     for (std::size_t i = 0; i < 2; ++i) {
       SCOPED_TRACE("view " + std::to_string(i));
-      const HostOutputs expected = read_results(own[i]);
-      EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.95f);
+      EXPECT_LT(std::ranges::min(expected[i].visibility.texels), 0.95f);
       const AlcoveArea inner = band ? own[i].info.written_area : shared[i].info.read_area;
       const AlcoveArea size{0, 0, inner.width, inner.height};
       const AlcoveArea area{shared[i].info.output_x, shared[i].info.output_y, size.width,
                             size.height};
       for (const OutputMember& each : kOutputs) {
-        if ((expected.*each.texels).texels.empty()) continue;
-        HostImage part = part_of(expected.*each.texels, size);
+        if ((expected[i].*each.texels).texels.empty()) continue;
+        HostImage part = part_of(expected[i].*each.texels, size);
         EXPECT_EQ(part_of(outputs.*each.texels, area).texels, part.texels);
         std::ranges::fill(part.texels, kPoison);
         place(rest.*each.texels, part, area.x, area.y);
@@ -147,10 +129,8 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
     views[1].info.id = 1;
     views[1].info.read_area = {0, 0, 37, 45};
     views[1].info.written_area = without_band(views[1].info.read_area);
-    run_frame(context(), views, index);
-    engine().wait();
-    const HostOutputs expected = read_results(views[0]);
-    const HostOutputs outputs = read_results(views[1]);
+    const std::vector<HostOutputs> results = run_views(context(), views, index);
+    const HostOutputs &expected = results[0], &outputs = results[1];
     const AlcoveArea& inner = views[1].info.written_area;
     const AlcoveArea corner{0, 0, inner.width, inner.height};
     EXPECT_EQ(part_of(outputs.visibility, corner).texels,
@@ -163,24 +143,24 @@ TEST_P(CAreas, GuardBandGivesTheInnerPartOfALargerPicture) {
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, CAreas,
-    testing::Values(Case{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
-                    Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
-                    Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
-                    Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
-                    Case{"WithoutNormals", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) { view.normals = {}; }},
-                    Case{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) {
-                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
-                           view.settings.bent_normal = true;
-                           view.normals = {};
-                         }},
-                    Case{"SpecularByTableAlone", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; }},
-                    Case{"TwoDepthLayers", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) { view.settings.depth_layers = 2; }},
-                    Case{"WithoutHistory", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) { view.settings.history_frames = 0; }}),
+    testing::Values(
+        PresetCase{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
+        PresetCase{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
+        PresetCase{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
+        PresetCase{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
+        PresetCase{"WithoutNormals", ALCOVE_QUALITY_LOW, [](HostView& view) { view.normals = {}; }},
+        PresetCase{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
+                   [](HostView& view) {
+                     view.settings.specular = ALCOVE_SPECULAR_TABLE;
+                     view.settings.bent_normal = true;
+                     view.normals = {};
+                   }},
+        PresetCase{"SpecularByTableAlone", ALCOVE_QUALITY_MEDIUM,
+                   [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; }},
+        PresetCase{"TwoDepthLayers", ALCOVE_QUALITY_LOW,
+                   [](HostView& view) { view.settings.depth_layers = 2; }},
+        PresetCase{"WithoutHistory", ALCOVE_QUALITY_LOW,
+                   [](HostView& view) { view.settings.history_frames = 0; }}),
     [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace

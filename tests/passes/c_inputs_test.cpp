@@ -176,10 +176,9 @@ TEST_F(CInputs, LayersOfAnArrayImageCanBeOutputsOfDifferentViews) {
     views.at(eye).images[ALCOVE_IMAGE_VISIBILITY] = both;
     views.at(eye).images[ALCOVE_IMAGE_VISIBILITY].layer = eye;
   }
-  run_frame(context(), views, 0);
-  engine().wait();
+  const std::vector<HostOutputs> results = run_views(context(), views, 0);
   for (std::uint32_t eye = 0; eye < 2; ++eye)
-    expect_equal(read_results(views.at(eye)), run_plainly(from.at(eye), 0));
+    expect_equal(results[eye], run_plainly(from.at(eye), 0));
 }
 
 TEST_F(CInputs, DepthImageInDepthFormatAndAttachmentLayoutIsAccepted) {

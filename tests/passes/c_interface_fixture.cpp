@@ -9,17 +9,8 @@
 namespace alcove::passes {
 namespace {
 
-constexpr VkImageUsageFlags kInputUsage =
-    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 constexpr VkImageUsageFlags kOutputUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-
-HostImage uniform(std::uint32_t width, std::uint32_t height, std::vector<float> texel) {
-  HostImage image{width, height, {}, static_cast<std::uint32_t>(texel.size())};
-  for (std::size_t i = 0; i < std::size_t{width} * height; ++i)
-    image.texels.insert(image.texels.end(), texel.begin(), texel.end());
-  return image;
-}
 
 }  // namespace
 
@@ -38,6 +29,15 @@ HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene
   host_view.settings.roughness_channel = 1;
   host_view.settings.precision = ALCOVE_PRECISION_FLOAT32;
   return host_view;
+}
+
+HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene, float radius,
+                   const PresetCase& preset) {
+  HostView view = draw_view(width, height, scene);
+  view.settings = OcclusionSettings(preset.quality, radius);
+  view.settings.roughness_channel = 1;
+  preset.change(view);
+  return view;
 }
 
 void request_all_outputs(HostView& view) {
@@ -87,11 +87,6 @@ AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index) {
           .slot = index % TestEngine::kSlots,
           .view_count = static_cast<std::uint32_t>(views.size()),
           .views = views.data()};
-}
-
-void expect_equal(const HostOutputs& outputs, const HostOutputs& expected) {
-  for (const OutputMember& each : kOutputs)
-    EXPECT_EQ((outputs.*each.texels).texels, (expected.*each.texels).texels);
 }
 
 std::string print(const std::function<std::size_t(char*, std::size_t)>& write) {
@@ -148,9 +143,9 @@ AlcoveImage CInterface::input(const HostImage& contents) {
            input.first.texels == contents.texels;
   });
   if (shares_inputs_ && entry != inputs_.end()) return entry->second;
-  const AlcoveImage image = engine_->make_image(float_format(contents.channels), contents.width,
-                                                contents.height, kInputUsage);
-  engine_->write(image, std::as_bytes(std::span(contents.texels)));
+  const AlcoveImage image =
+      engine_->make_filled(float_format(contents.channels), contents.width, contents.height,
+                           std::as_bytes(std::span(contents.texels)));
   inputs_.emplace_back(contents, image);
   return image;
 }
@@ -217,10 +212,19 @@ void CInterface::discard_frame(AlcoveContext& context, std::span<const AlcoveVie
   EXPECT_EQ(alcoveDiscardFrame(&context), ALCOVE_SUCCESS);
 }
 
-HostOutputs CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
-  run_frame(context(), {&view, 1}, index);
+std::vector<HostOutputs> CInterface::run_views(AlcoveContext& context,
+                                               std::span<const AlcoveView> views,
+                                               std::uint32_t index) {
+  run_frame(context, views, index);
   engine_->wait();
-  return read_results(view);
+  std::vector<HostOutputs> results(views.size());
+  std::ranges::transform(views, results.begin(),
+                         [&](const AlcoveView& view) { return read_results(view); });
+  return results;
+}
+
+HostOutputs CInterface::run_view(const AlcoveView& view, std::uint32_t index) {
+  return run_views(context(), {&view, 1}, index)[0];
 }
 
 std::vector<HostOutputs> CInterface::run_views(AlcoveContext& context,
@@ -229,12 +233,7 @@ std::vector<HostOutputs> CInterface::run_views(AlcoveContext& context,
   std::vector<AlcoveView> views(from.size());
   std::ranges::transform(from, views.begin(),
                          [&](const HostView& each) { return create_view(each); });
-  run_frame(context, views, index);
-  engine_->wait();
-  std::vector<HostOutputs> results(from.size());
-  std::ranges::transform(views, results.begin(),
-                         [&](const AlcoveView& view) { return read_results(view); });
-  return results;
+  return run_views(context, views, index);
 }
 
 HostOutputs CInterface::run_plainly(const HostView& view, std::uint32_t index) {

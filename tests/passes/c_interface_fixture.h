@@ -23,6 +23,20 @@ namespace alcove::passes {
 // Draws a view of a scene with every input. Tests change its settings and its camera.
 HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene = ball_on_floor(),
                    const TestView& view = test_views()[2]);
+// The parameter of a test: the settings of a preset, which `change` changes.
+struct PresetCase {
+  const char* name;
+  AlcoveQuality quality;
+  void (*change)(HostView& view) = [](HostView&) {};
+  bool area_and_mask = false;  // the test gives a part of the images and a mask
+
+  friend std::ostream& operator<<(std::ostream& out, const PresetCase& preset) {
+    return out << preset.name;
+  }
+};
+// Draws a view with these settings.
+HostView draw_view(std::uint32_t width, std::uint32_t height, const Scene& scene, float radius,
+                   const PresetCase& preset);
 // Requests every output: specular occlusion by slices.
 void request_all_outputs(HostView& view);
 
@@ -43,8 +57,6 @@ void advance(HostView& view, std::uint32_t index);
 
 // Returns frame `index` of these views.
 AlcoveFrame make_frame(std::span<const AlcoveView> views, std::uint32_t index);
-
-void expect_equal(const HostOutputs& outputs, const HostOutputs& expected);
 
 // Returns the text of a function such as alcovePrintPlan, which writes like snprintf.
 std::string print(const std::function<std::size_t(char*, std::size_t)>& write);
@@ -81,7 +93,9 @@ class CInterface : public PassTest {
   void run_frame(AlcoveContext& context, std::span<const AlcoveView> views, std::uint32_t index);
   void discard_frame(AlcoveContext& context, std::span<const AlcoveView> views,
                      std::uint32_t index);
-  // Runs a frame of one view with the shared context, and returns its results.
+  // Run a frame and return its results; of one view with the shared context.
+  std::vector<HostOutputs> run_views(AlcoveContext& context, std::span<const AlcoveView> views,
+                                     std::uint32_t index);
   HostOutputs run_view(const AlcoveView& view, std::uint32_t index);
 
   std::vector<HostOutputs> run_views(AlcoveContext& context, std::span<const HostView> views,

@@ -51,13 +51,10 @@ class CMask : public CInterface {
 
   // Returns a mask with `bits` where the weapon is.
   AlcoveImage create_mask(VkFormat format, std::uint32_t bits) {
-    const AlcoveImage image = engine().make_image(
-        format, kWidth, kHeight, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     Bytes bytes;
     for (const bool shows : shows_weapon_)
       bytes.push_back(static_cast<std::byte>(shows ? bits : 64));
-    engine().write(image, bytes);
-    return image;
+    return engine().make_filled(format, kWidth, kHeight, bytes);
   }
 
   // Runs frames with a moving and then a static camera, and returns the results of the last.

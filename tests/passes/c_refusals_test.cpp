@@ -57,9 +57,8 @@ class CRefusals : public CInterface {
     from_ = draw_view(16, 12, groove(0.8));
     request_all_outputs(from_);
     view_ = create_view(from_);
-    view_.images[ALCOVE_IMAGE_MASK] = engine().make_image(
-        VK_FORMAT_R8_UINT, 16, 12, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    engine().write(view_.images[ALCOVE_IMAGE_MASK], Bytes(16UL * 12));  // without effect
+    view_.images[ALCOVE_IMAGE_MASK] =
+        engine().make_filled(VK_FORMAT_R8_UINT, 16, 12, Bytes(16UL * 12));  // without effect
     view_.info.not_receiving = 1;
   }
 

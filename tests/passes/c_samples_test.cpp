@@ -177,10 +177,8 @@ TEST_P(CTileSize, DepthWithFourSamplesGivesTheResultOfItsFirstSample) {
           view.info.read_area = area;
           view.info.reset_history = index == 0 ? VK_TRUE : VK_FALSE;
         }
-        run_frame(context(), views, index);
-        engine().wait();
-        const HostOutputs expected = read_results(views[0]);
-        const HostOutputs outputs = read_results(views[1]);
+        const std::vector<HostOutputs> results = run_views(context(), views, index);
+        const HostOutputs &expected = results[0], &outputs = results[1];
         EXPECT_LT(std::ranges::min(expected.visibility.texels), 0.97f);
         if (area.width == 0) expect_equal(outputs, expected);
         for (std::uint32_t y = 0; y < area.height; ++y)

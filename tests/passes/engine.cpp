@@ -35,6 +35,17 @@ VkBufferImageCopy whole(const AlcoveImage& image) {
 
 }  // namespace
 
+framegraph::ImportedTexture import_of(const AlcoveImage& image) {
+  const auto to_state = [](const AlcoveState& state) {
+    return framegraph::State{state.stages, state.access, state.layout};
+  };
+  return {.image = image.image,
+          .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
+          .usage = image.usage,
+          .initial_state = to_state(image.initial_state),
+          .final_state = to_state(image.final_state)};
+}
+
 TestEngine::TestEngine(const sample::VulkanDevice& device) : device_(device) {
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -92,6 +103,16 @@ AlcoveImage TestEngine::make_image(VkFormat format, std::uint32_t width, std::ui
     change_layout(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, kResting.layout);
   });
   wait();
+  return image;
+}
+
+AlcoveImage TestEngine::make_filled(VkFormat format, std::uint32_t width, std::uint32_t height,
+                                    std::span<const std::byte> texels,
+                                    VkImageUsageFlags further_usage) {
+  const AlcoveImage image =
+      make_image(format, width, height,
+                 VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | further_usage);
+  write(image, texels);
   return image;
 }
 

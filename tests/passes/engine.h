@@ -25,6 +25,9 @@ inline constexpr AlcoveState kResting{VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 
+// Returns what a graph imports an image as.
+framegraph::ImportedTexture import_of(const AlcoveImage& image);
+
 class TestEngine {
  public:
   static constexpr std::uint32_t kSlots = 2;
@@ -46,7 +49,11 @@ class TestEngine {
   AlcoveView make_view(const AlcoveSettings& settings, std::uint32_t width, std::uint32_t height,
                        std::initializer_list<AlcoveImageRole> roles);
 
-  // Destroys an image that make_image() returned. The device must have finished using it.
+  // Creates an image that shaders sample, with tightly packed texels.
+  AlcoveImage make_filled(VkFormat format, std::uint32_t width, std::uint32_t height,
+                          std::span<const std::byte> texels, VkImageUsageFlags further_usage = 0);
+
+  // Destroys an image that was created here. The device must have finished using it.
   void destroy_image(const AlcoveImage& image);
 
   // Calls alcoveForgetImage for every image.

@@ -49,17 +49,6 @@ tl::expected<void, std::string> record_occlusion(Engine& engine, VkCommandBuffer
   return {};
 }
 
-framegraph::ImportedTexture import_of(const AlcoveImage& image) {
-  const auto state = [](const AlcoveState& of) {
-    return framegraph::State{of.stages, of.access, of.layout};
-  };
-  return {.image = image.image,
-          .desc = {image.format, framegraph::Extent::absolute(image.width, image.height)},
-          .usage = image.usage,
-          .initial_state = state(image.initial_state),
-          .final_state = state(image.final_state)};
-}
-
 class Example : public passes::CInterface {
  protected:
   std::unique_ptr<Engine> start() {
@@ -80,9 +69,9 @@ TEST_F(Example, ReadmeExampleDrawsTheSameImageAsTheCInterface) {
   ASSERT_NE(example, nullptr);
   const AlcoveView images = create_view(from);
   example->settings = from.settings;
-  example->depth = import_of(images.images[ALCOVE_IMAGE_DEPTH]);
-  example->normals = import_of(images.images[ALCOVE_IMAGE_NORMALS]);
-  example->visibility = import_of(images.images[ALCOVE_IMAGE_VISIBILITY]);
+  example->depth = passes::import_of(images.images[ALCOVE_IMAGE_DEPTH]);
+  example->normals = passes::import_of(images.images[ALCOVE_IMAGE_NORMALS]);
+  example->visibility = passes::import_of(images.images[ALCOVE_IMAGE_VISIBILITY]);
   for (std::uint32_t i = 0; i < 4; ++i) {
     from.previous_view = from.view;
     from.view.view_from_world[12] = 0.02f * static_cast<float>(i);

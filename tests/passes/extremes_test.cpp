@@ -18,18 +18,6 @@ namespace {
 constexpr std::uint32_t kWidth = 57;
 constexpr std::uint32_t kHeight = 39;
 
-// Returns settings that compute visibility, bent normals and specular occlusion.
-OcclusionSettings everything(AlcoveQuality quality, float radius) {
-  OcclusionSettings settings(quality, radius);
-  settings.bent_normal = true;
-  settings.specular = ALCOVE_SPECULAR_SLICES;
-  settings.precision = ALCOVE_PRECISION_FLOAT32;
-  // The preset `height_field` with fewer samples, which compile and run faster.
-  settings.slices = std::min(settings.slices, 4u);
-  settings.steps = std::min(settings.steps, 16u);
-  return settings;
-}
-
 AlcoveCamera moved_by(AlcoveCamera view, double x) {
   view.view_from_world[12] = static_cast<float>(x);
   return view;
@@ -47,14 +35,10 @@ class Extremes : public PassTest, public testing::WithParamInterface<AlcoveQuali
     const Drawing drawing = draw(view, kWidth, kHeight, scene);
     std::vector<Images> images;
     for (std::uint32_t i = 0; i < frames; ++i) {
-      images.push_back(run_occlusion({.view = moved_by(view.view, -step * i),
-                                      .previous_view = moved_by(view.view, -step * (i - 1.0)),
-                                      .reset = i == 0,
-                                      .depth_ndc = drawing.depth_ndc,
-                                      .normals = drawing.normal_vs,
-                                      .second_depth_ndc = drawing.depth_ndc,
-                                      .settings = settings},
-                                     i));
+      HostView frame = make_view(drawing, settings, i);
+      frame.view = moved_by(view.view, -step * i);
+      frame.previous_view = moved_by(view.view, -step * (i - 1.0));
+      images.push_back(run_occlusion(frame, i));
     }
     return images;
   }
@@ -82,13 +66,9 @@ TEST_P(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
       const std::vector<Images> series =
           strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
-                 everything(GetParam(), static_cast<float>(unit)), 3);
+                 all_outputs(GetParam(), static_cast<float>(unit)), 3);
       if (exponent == 0) expected = series;
-      for (std::size_t i = 0; i < series.size(); ++i) {
-        EXPECT_EQ(series[i].visibility.texels, expected[i].visibility.texels) << "frame " << i;
-        EXPECT_EQ(series[i].bent_normal.texels, expected[i].bent_normal.texels) << "frame " << i;
-        EXPECT_EQ(series[i].specular.texels, expected[i].specular.texels) << "frame " << i;
-      }
+      for (std::size_t i = 0; i < series.size(); ++i) expect_equal(series[i], expected[i]);
     }
   }
 }
@@ -96,7 +76,7 @@ TEST_P(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
 // Tests near planes in front of the eye and behind it. Some engines place the near plane of an
 // orthographic view behind the eye.
 TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
-  const OcclusionSettings settings = everything(GetParam(), 1.0f);
+  const OcclusionSettings settings = all_outputs(GetParam(), 1.0f);
   for (const NamedScene& scene : gtao_scenes()) {
     std::vector<Images> expected;
     for (const double shift : {0.0, 4.125, 1024.0, -1024.0}) {
@@ -117,25 +97,18 @@ TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
 TEST_P(Extremes, HistoryIsKeptFarFromTheWorldOrigin) {
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
-  const HostImage motion{kWidth, kHeight,
-                         std::vector<float>(std::size_t{2} * kWidth * kHeight, 0.0f), 2};
-  const OcclusionSettings settings = everything(GetParam(), 1.0f);
+  const OcclusionSettings settings = all_outputs(GetParam(), 1.0f);
   const auto visibility_at = [&](double distance) {
     glm::dmat4 rotated = glm::rotate(glm::dmat4(1.0), 0.9, glm::dvec3(0.3, 0.7, -0.2));
     rotated = glm::translate(rotated, distance * glm::dvec3(-1.0, -0.3, 0.8));
-    AlcoveCamera far = view.view;
-    for (int i = 0; i < 16; ++i) far.view_from_world[i] = static_cast<float>(rotated[i / 4][i % 4]);
+    HostView frame = make_view(drawing, settings);
+    for (int i = 0; i < 16; ++i)
+      frame.view.view_from_world[i] = static_cast<float>(rotated[i / 4][i % 4]);
+    frame.previous_view = frame.view;
+    frame.motion = uniform(kWidth, kHeight, {0.0f, 0.0f});
     HostImage visibility;
-    for (std::uint32_t i = 0; i < 8; ++i)
-      visibility = run_occlusion({.view = far,
-                                  .reset = i == 0,
-                                  .depth_ndc = drawing.depth_ndc,
-                                  .normals = drawing.normal_vs,
-                                  .motion = motion,
-                                  .second_depth_ndc = drawing.depth_ndc,
-                                  .settings = settings},
-                                 i)
-                       .visibility;
+    for (std::uint32_t i = 0; i < 8; ++i, frame.reset = false)
+      visibility = run_occlusion(frame, i).visibility;
     return visibility;
   };
   EXPECT_LT(rms(visibility_at(1e6), visibility_at(0.0)), 1e-3);
@@ -145,29 +118,21 @@ TEST_P(Extremes, InvalidNormalsAndRoughnessInOneFrameDoNotPersistInTheHistory) {
   constexpr std::array kHoles{0u, 20 * kWidth + 28, 20 * kWidth + 29, 7 * kWidth + 40};
   for (const TestView& view : {test_views()[2], test_views().back()}) {
     const Drawing clean = draw(view, kWidth, kHeight, ball_on_floor());
-    const HostImage smooth{kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight, 0.4f),
-                           1};
-    const OcclusionSettings settings = everything(GetParam(), 1.0f);
+    const OcclusionSettings settings = all_outputs(GetParam(), 1.0f);
     // Renders several frames. Frame 1 has the value `wrong` in its normals or roughness.
     const auto frames = [&](float wrong, bool in_normals) {
       std::vector<Images> images;
       for (std::uint32_t i = 0; i < 5; ++i) {
-        HostImage normals = clean.normal_vs;
-        HostImage roughness = smooth;
-        HostImage& invalid = in_normals ? normals : roughness;
+        HostView frame = make_view(clean, settings, i);
+        frame.view = moved_by(view.view, 0.01 * i);
+        frame.previous_view = moved_by(view.view, 0.01 * (i - 1.0));
+        frame.roughness = uniform(kWidth, kHeight, {0.4f});
+        HostImage& invalid = in_normals ? frame.normals : frame.roughness;
         for (const std::uint32_t hole : kHoles) {
           const auto texel = invalid.texels.begin() + std::ptrdiff_t{hole} * invalid.channels;
           std::fill_n(texel, i == 1 ? invalid.channels : 0, wrong);
         }
-        images.push_back(run_occlusion({.view = moved_by(view.view, 0.01 * i),
-                                        .previous_view = moved_by(view.view, 0.01 * (i - 1.0)),
-                                        .reset = i == 0,
-                                        .depth_ndc = clean.depth_ndc,
-                                        .normals = normals,
-                                        .roughness = roughness,
-                                        .second_depth_ndc = clean.depth_ndc,
-                                        .settings = settings},
-                                       i));
+        images.push_back(run_occlusion(frame, i));
       }
       return images;
     };
@@ -203,7 +168,7 @@ TEST_P(Extremes, SurfacesFarBehindAllTracedPixelsKeepTheirVisibility) {
       std::copy_n(&near.normal_vs.texels[std::size_t{i} * 4], 4,
                   &far.normal_vs.texels[std::size_t{i} * 4]);
     }
-    OcclusionSettings settings = everything(GetParam(), static_cast<float>(0.3 * distance));
+    OcclusionSettings settings = all_outputs(GetParam(), static_cast<float>(0.3 * distance));
     settings.history_frames = 0;
     const Images images = render(far, settings);
     expect_sound(images);
@@ -219,7 +184,7 @@ TEST_P(Extremes, AnyOcclusionRadiusGivesFiniteValuesInRange) {
     std::vector<HostImage> largest;
     for (const float radius : {1e-30f, 1e-5f, 1e-3f, 1.0f, 1e6f, 1e12f, 1e30f, 3e38f}) {
       SCOPED_TRACE(testing::Message() << view.name << ", radius " << radius);
-      OcclusionSettings settings = everything(GetParam(), radius);
+      OcclusionSettings settings = all_outputs(GetParam(), radius);
       settings.history_frames = 0;
       const Images images = render(drawing, settings);
       expect_sound(images);
@@ -240,22 +205,18 @@ TEST_P(Extremes, ImageSizeMayChangeToOnePixelAndBackBetweenFrames) {
   constexpr std::array<VkExtent2D, 9> kSizes{
       {{1, 1}, {64, 48}, {1, 1}, {1, 48}, {64, 1}, {3, 5}, {2, 2}, {63, 47}, {1, 1}}};
   const TestView view = test_views()[2];
-  const OcclusionSettings settings = everything(GetParam(), 1.0f);
+  const OcclusionSettings settings = all_outputs(GetParam(), 1.0f);
   // The frame counter wraps around within these frames.
   std::uint32_t index = std::numeric_limits<std::uint32_t>::max() - 4;
   VkExtent2D previous = kSizes[0];
   for (const VkExtent2D size : kSizes) {
     SCOPED_TRACE(testing::Message() << size.width << " x " << size.height);
     const Drawing drawing = draw(view, size.width, size.height, ball_on_floor());
-    const Images images = run_occlusion({.view = view.view,
-                                         .largest_size = kLargest,
-                                         .previous_size = previous,
-                                         .depth_ndc = drawing.depth_ndc,
-                                         .normals = drawing.normal_vs,
-                                         .second_depth_ndc = drawing.depth_ndc,
-                                         .settings = settings},
-                                        index++);
-    expect_sound(images);
+    HostView frame = make_view(drawing, settings);
+    frame.reset = false;
+    frame.largest_size = kLargest;
+    frame.previous_size = previous;
+    expect_sound(run_occlusion(frame, index++));
     previous = size;
   }
 }

@@ -13,15 +13,6 @@ namespace {
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 48;
 
-OcclusionSettings all_outputs(AlcoveQuality quality,
-                              AlcoveSpecular specular = ALCOVE_SPECULAR_SLICES) {
-  OcclusionSettings settings(quality, 0.5f);
-  settings.bent_normal = true;
-  settings.specular = specular;
-  settings.precision = ALCOVE_PRECISION_FLOAT32;
-  return settings;
-}
-
 // Returns the drawing with all components of the normal of every `stride`th pixel replaced.
 Drawing replace_normals(Drawing drawing, float component, std::size_t stride) {
   HostImage& normals = drawing.normal_vs;
@@ -47,7 +38,7 @@ TEST_F(NormalsOfAGBuffer, NormalsThatFaceAwayFromTheEyeGiveTheSameImagesAsFacing
   const TestView view = test_views()[2];
   const Drawing drawing = draw(view, kWidth, kHeight, ball_on_floor());
   for (const AlcoveSpecular specular : {ALCOVE_SPECULAR_SLICES, ALCOVE_SPECULAR_TABLE}) {
-    const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, specular);
+    const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, 0.5f, specular);
     const HostOutputs outputs = third_frame(invert_normals(drawing), settings);
     const HostOutputs expected = third_frame(drawing, settings);
     EXPECT_LT(rms(outputs.visibility, expected.visibility), 2e-3);

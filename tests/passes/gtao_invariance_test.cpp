@@ -108,12 +108,7 @@ TEST_F(GtaoInvariance, EveryPixelIsWrittenForAnyImageSizeAndTileSize) {
         settings.bent_normal = true;
         poison_memory(width, height);
         // In this frame the traced pixels of the last tiles lie outside the image.
-        const HostOutputs images = run_occlusion({.view = view.view,
-                                                  .reset = true,
-                                                  .depth_ndc = drawing.depth_ndc,
-                                                  .normals = drawing.normal_vs,
-                                                  .settings = settings},
-                                                 1);
+        const HostOutputs images = run_occlusion(make_view(drawing, settings), 1);
         for (std::uint32_t i = 0; i < width * height; ++i) {
           ASSERT_NEAR(images.visibility.texels[i], 1.0, 0.05) << "pixel " << i;
           double dot = 0.0;
@@ -149,10 +144,7 @@ TEST_F(GtaoInvariance, PixelWithNaNDepthAffectsOnlyNearbyPixelsAndGivesFiniteRes
     settings.bent_normal = true;
     settings.slices = 4;  // with a filter
     Drawing drawing = draw(view, kWidth, kHeight, groove(0.8));
-    HostView frame{.view = view.view,
-                   .depth_ndc = drawing.depth_ndc,
-                   .normals = drawing.normal_vs,
-                   .settings = settings};
+    HostView frame = make_view(drawing, settings);
     const HostImage clean = run_occlusion(frame).visibility;
     for (const std::uint32_t hole : {0u, 20u * kWidth + 28u}) frame.depth_ndc.texels[hole] = kNaN;
     const HostOutputs invalid = run_occlusion(frame);
@@ -195,13 +187,11 @@ TEST_F(GtaoInvariance, InvalidDepthBuffersGiveFiniteImages) {
             all_inputs ? ALCOVE_THICKNESS_LIMIT_BACK_FACES : ALCOVE_THICKNESS_LIMIT_RADIUS;
         settings.depth_layers = all_inputs ? 2 : 1;
         for (int frame = 0; frame < 2; ++frame) {
-          const HostOutputs images =
-              run_occlusion({.view = view.view,
-                             .depth_ndc = drawing.depth_ndc,
-                             .normals = all_inputs ? drawing.normal_vs : HostImage{},
-                             .back_depth_ndc = backs,
-                             .second_depth_ndc = backs,
-                             .settings = settings});
+          HostView invalid = make_view(drawing, settings);
+          if (!all_inputs) invalid.normals = {};
+          invalid.back_depth_ndc = invalid.second_depth_ndc = backs;
+          invalid.reset = false;
+          const HostOutputs images = run_occlusion(invalid);
           EXPECT_THAT(images.visibility.texels,
                       testing::Each(testing::AllOf(testing::Ge(0.0f), testing::Le(1.0f))));
           for (const float component : images.bent_normal.texels)

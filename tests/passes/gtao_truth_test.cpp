@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "alcove/passes/setting_table.h"
 #include "gtao_scenes.h"
@@ -105,36 +106,28 @@ TEST_F(GtaoTruth, EstimatorConnectedAgreesWithBruteForceIfVolumeBehindOccludersI
 }
 
 // Visibility of a floor at distance d from a long platform of height h: (1 + cos atan(h / d)) / 2.
+// With uniform weighting the platform hides a lune of the angle atan(h / d) of the hemisphere.
 TEST_F(GtaoTruth, VisibilityOfAFloorInFrontOfAPlatformMatchesTheClosedForm) {
   const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
   const double height = 0.5;
   const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  for (const AlcoveEstimator estimator : {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_ESTIMATOR_CONNECTED}) {
-    SCOPED_TRACE(int{estimator});
-    const auto images = render(drawing, exact(estimator, 8.0f));
+  for (const auto& [estimator, weighting] :
+       {std::pair{ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_WEIGHTING_COSINE},
+        {ALCOVE_ESTIMATOR_CONNECTED, ALCOVE_WEIGHTING_COSINE},
+        {ALCOVE_ESTIMATOR_HORIZONS, ALCOVE_WEIGHTING_UNIFORM}}) {
+    SCOPED_TRACE(testing::Message() << "estimator " << estimator << ", weighting " << weighting);
+    OcclusionSettings settings = exact(estimator, 8.0f);
+    settings.weighting = weighting;
+    const auto images = render(drawing, settings);
     for (std::uint32_t x = 44; x < 62; ++x) {
       const double distance = (64 - x - 0.5) * 8.0 / 128;
-      const double expected = 0.5 + 0.5 * distance / std::hypot(distance, height);
+      const double expected = weighting == ALCOVE_WEIGHTING_UNIFORM
+                                  ? 1.0 - std::atan(height / distance) / std::numbers::pi
+                                  : 0.5 + 0.5 * distance / std::hypot(distance, height);
       EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.025) << distance << " units away";
     }
     for (std::uint32_t x = 66; x < 120; ++x) EXPECT_NEAR(images.visibility.at(x, 64), 1.0, 0.004);
   }
-}
-
-// With uniform weighting the platform hides a lune of the angle atan(h / d) of the hemisphere.
-TEST_F(GtaoTruth, UniformVisibilityInFrontOfAPlatformMatchesTheClosedForm) {
-  const TestView view = orthographic_view("orthographic", 4.0, 4.0, 0.1, 20.0);
-  const double height = 0.5;
-  const Drawing drawing = draw(view, 128, 128, step(0.0, height));
-  OcclusionSettings settings = exact(ALCOVE_ESTIMATOR_HORIZONS, 8.0f);
-  settings.weighting = ALCOVE_WEIGHTING_UNIFORM;
-  const auto images = render(drawing, settings);
-  for (std::uint32_t x = 44; x < 62; ++x) {
-    const double distance = (64 - x - 0.5) * 8.0 / 128;
-    const double expected = 1.0 - std::atan(height / distance) / std::numbers::pi;
-    EXPECT_NEAR(images.visibility.at(x, 64), expected, 0.025) << distance << " units away";
-  }
-  for (std::uint32_t x = 66; x < 120; ++x) EXPECT_NEAR(images.visibility.at(x, 64), 1.0, 0.004);
 }
 
 // The visibility of a wall of a groove with the angle a between its walls is (1 - cos a) / 2 near

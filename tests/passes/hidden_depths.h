@@ -21,13 +21,9 @@ class HiddenDepthTest : public PassTest {
   // `hidden` is the depth of back faces or of the second layer, whichever the settings read.
   HostImage visibility(const Drawing& drawing, const HostImage& hidden,
                        const OcclusionSettings& settings) {
-    return run_occlusion({.view = drawing.view,
-                          .depth_ndc = drawing.depth_ndc,
-                          .normals = drawing.normal_vs,
-                          .back_depth_ndc = hidden,
-                          .second_depth_ndc = hidden,
-                          .settings = settings})
-        .visibility;
+    HostView view = make_view(drawing, settings);
+    view.back_depth_ndc = view.second_depth_ndc = hidden;
+    return run_occlusion(view).visibility;
   }
 };
 

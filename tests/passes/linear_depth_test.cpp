@@ -96,8 +96,7 @@ TEST_F(LinearDepth, EveryPixelIsWrittenAtAnyImageSize) {
        {std::pair{1u, 1u}, {3u, 5u}, {17u, 9u}, {33u, 1u}, {1u, 40u}}) {
     SCOPED_TRACE(testing::Message() << width << " x " << height);
     poison_memory(width, height);
-    const HostImage depth{width, height, std::vector<float>(std::size_t{width} * height, 0.5f), 1};
-    EXPECT_THAT(linear_image(view.view, depth).texels,
+    EXPECT_THAT(linear_image(view.view, uniform(width, height, {0.5f})).texels,
                 testing::Each(testing::FloatNear(static_cast<float>(expected), 1e-4f)));
   }
 }

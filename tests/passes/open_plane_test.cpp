@@ -104,28 +104,11 @@ class OpenPlane : public PassTest {
  protected:
   HostOutputs frame(const Drawing& drawing, const OcclusionSettings& settings,
                     VkFormat depth_format, std::uint32_t index) {
-    return run_occlusion({.view = drawing.view,
-                          .reset = index == 0,
-                          .depth_ndc = drawing.depth_ndc,
-                          .depth_format = depth_format,
-                          .normals = drawing.normal_vs,
-                          .second_depth_ndc = drawing.depth_ndc,
-                          .settings = settings},
-                         index);
+    HostView view = make_view(drawing, settings, index);
+    view.depth_format = depth_format;
+    return run_occlusion(view, index);
   }
 };
-
-OcclusionSettings all_outputs(AlcoveQuality quality, float radius) {
-  OcclusionSettings settings(quality, radius);
-  settings.precision = ALCOVE_PRECISION_FLOAT32;
-  settings.bent_normal = true;
-  settings.specular =
-      quality == ALCOVE_QUALITY_HIGH ? ALCOVE_SPECULAR_TABLE : ALCOVE_SPECULAR_SLICES;
-  // The preset `height_field` with fewer samples, which compile and run faster.
-  settings.slices = std::min(settings.slices, 4u);
-  settings.steps = std::min(settings.steps, 16u);
-  return settings;
-}
 
 TEST_F(OpenPlane, IsOpenInEveryPreset) {
   for (const Case& each : open_planes()) {
@@ -136,11 +119,13 @@ TEST_F(OpenPlane, IsOpenInEveryPreset) {
     for (std::size_t i = 0; i < kQualityNames.size(); ++i) {
       const auto quality = static_cast<AlcoveQuality>(i);
       if (!each.every_preset && quality != ALCOVE_QUALITY_MEDIUM) continue;
+      const OcclusionSettings settings = all_outputs(
+          quality, each.radius,
+          quality == ALCOVE_QUALITY_HIGH ? ALCOVE_SPECULAR_TABLE : ALCOVE_SPECULAR_SLICES);
       for (std::uint32_t index = 0; index < 3; ++index) {
         SCOPED_TRACE(testing::Message() << each.name << ", radius " << each.radius << ", "
                                         << kQualityNames.at(quality) << ", frame " << index);
-        const HostOutputs images =
-            frame(drawing, all_outputs(quality, each.radius), each.depth_format, index);
+        const HostOutputs images = frame(drawing, settings, each.depth_format, index);
         EXPECT_GE(std::ranges::min(images.visibility.texels), each.visibility);
         EXPECT_GE(std::ranges::min(images.specular.texels), each.specular);
         for (std::size_t p = 0; p < normals.texels.size(); p += 4) {

@@ -71,6 +71,13 @@ HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_
   return image;
 }
 
+HostImage uniform(std::uint32_t width, std::uint32_t height, const std::vector<float>& texel) {
+  HostImage image{width, height, {}, static_cast<std::uint32_t>(texel.size())};
+  for (std::size_t i = 0; i < std::size_t{width} * height; ++i)
+    image.texels.insert(image.texels.end(), texel.begin(), texel.end());
+  return image;
+}
+
 VkFormat float_format(std::uint32_t channels) {
   return channels == 1   ? VK_FORMAT_R32_SFLOAT
          : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
@@ -178,6 +185,11 @@ void PassTest::run(const std::function<void(Graph&)>& declare) {
   ASSERT_TRUE(report) << report.error();
 }
 
+void expect_equal(const HostOutputs& outputs, const HostOutputs& expected) {
+  for (const OutputMember& each : kOutputs)
+    EXPECT_EQ((outputs.*each.texels).texels, (expected.*each.texels).texels);
+}
+
 AlcoveViewInfo view_info(const HostView& view) {
   return {.id = view.id,
           .reset_history = view.reset ? 1u : 0u,
@@ -192,15 +204,28 @@ AlcoveViewInfo view_info(const HostView& view) {
           .normals_in_view_space = view.normals_in_view_space ? 1u : 0u};
 }
 
+HostView make_view(const Drawing& drawing, const OcclusionSettings& settings, std::uint32_t index) {
+  return {.view = drawing.view,
+          .reset = index == 0,
+          .depth_ndc = drawing.depth_ndc,
+          .normals = drawing.normal_vs,
+          .second_depth_ndc = drawing.depth_ndc,
+          .settings = settings};
+}
+
+OcclusionSettings all_outputs(AlcoveQuality quality, float radius, AlcoveSpecular specular) {
+  OcclusionSettings settings(quality, radius);
+  settings.bent_normal = true;
+  settings.specular = specular;
+  settings.precision = ALCOVE_PRECISION_FLOAT32;
+  settings.slices = std::min(settings.slices, 4u);
+  settings.steps = std::min(settings.steps, 16u);
+  return settings;
+}
+
 HostOutputs PassTest::render(const Drawing& drawing, const OcclusionSettings& settings,
                              std::uint32_t index) {
-  return run_occlusion({.view = drawing.view,
-                        .reset = index == 0,
-                        .depth_ndc = drawing.depth_ndc,
-                        .normals = drawing.normal_vs,
-                        .second_depth_ndc = drawing.depth_ndc,
-                        .settings = settings},
-                       index);
+  return run_occlusion(make_view(drawing, settings, index), index);
 }
 
 HostOutputs PassTest::run_occlusion(const HostView& view, std::uint32_t index) {
@@ -223,9 +248,7 @@ HostOutputs PassTest::run_occlusion(const HostView& view, std::uint32_t index) {
 
 void PassTest::poison_memory(std::uint32_t width, std::uint32_t height) {
   constexpr int kTextures = 6;
-  const std::size_t floats = std::size_t{width} * height * 4;
-  const HostImage poison{width, height,
-                         std::vector<float>(floats, std::numeric_limits<float>::quiet_NaN()), 4};
+  const HostImage poison = uniform(width, height, {kNaN, kNaN, kNaN, kNaN});
   run([&](Graph& graph) {
     std::vector<Texture> textures;
     textures.reserve(kTextures);

@@ -34,6 +34,8 @@ struct HostImage {
 inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Returns an image of which each pixel is `texel`.
+HostImage uniform(std::uint32_t width, std::uint32_t height, const std::vector<float>& texel);
 // Returns the format of 32-bit floats with 1, 2 or 4 channels.
 VkFormat float_format(std::uint32_t channels);
 // Returns the bytes of a texel, and texels as floats, of a format that the passes write or of
@@ -117,10 +119,21 @@ inline constexpr std::array kOutputs{
     OutputMember{&HostOutputs::specular, ALCOVE_IMAGE_SPECULAR},
     OutputMember{&HostOutputs::multi_bounce, ALCOVE_IMAGE_MULTI_BOUNCE}};
 
+void expect_equal(const HostOutputs& outputs, const HostOutputs& expected);
+
 // Returns what the C interface takes for a view, without settings.
 AlcoveViewInfo view_info(const HostView& view);
 
 struct Drawing;
+// Returns the view of a drawing with its normals, and with its depth as second depth. Frame 0
+// resets the history first.
+HostView make_view(const Drawing& drawing, const OcclusionSettings& settings,
+                   std::uint32_t index = 0);
+
+// Returns settings of a preset that request visibility, bent normals and specular occlusion as
+// 32-bit floats. The preset `height_field` has fewer samples, which compile and run faster.
+OcclusionSettings all_outputs(AlcoveQuality quality, float radius = 0.5f,
+                              AlcoveSpecular specular = ALCOVE_SPECULAR_SLICES);
 
 // Runs passes on the machine's Vulkan device under the validation layers. Any message of the layers
 // fails the test. The tests of a program share the device and its pipelines, but no resources.
@@ -156,8 +169,7 @@ class PassTest : public testing::Test {
   }
   // Runs add_view() for frame `index` and returns its outputs. `albedo` is not an input.
   HostOutputs run_occlusion(const HostView& view, std::uint32_t index = 0);
-  // Runs frame `index` of a drawing with its normals, and with its depth as second depth. Frame 0
-  // resets the history first.
+  // Runs frame `index` of make_view().
   HostOutputs render(const Drawing& drawing, const OcclusionSettings& settings,
                      std::uint32_t index = 0);
 

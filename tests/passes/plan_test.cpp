@@ -29,10 +29,6 @@ struct OutputChoice {
   bool specular = false;
 };
 
-HostImage uniform_image(std::uint32_t channels, float value) {
-  return {32, 24, std::vector<float>(std::size_t{channels} * 32 * 24, value), channels};
-}
-
 void expect_same(const FramePlan& a, const FramePlan& b) {
   EXPECT_EQ(a.passes, b.passes);
   EXPECT_EQ(a.transients, b.transients);
@@ -52,13 +48,14 @@ class OcclusionPlan : public PassTest {
     run([&](Graph& graph) {
       ViewTextures textures{upload(graph, drawing.depth_ndc)};
       if (images.normals) textures[ALCOVE_IMAGE_NORMALS] = upload(graph, drawing.normal_vs);
-      if (images.motion) textures[ALCOVE_IMAGE_MOTION] = upload(graph, uniform_image(2, 0.0f));
+      if (images.motion)
+        textures[ALCOVE_IMAGE_MOTION] = upload(graph, uniform(32, 24, {0.0f, 0.0f}));
       if (images.hidden_depths) {
         textures[ALCOVE_IMAGE_BACK_DEPTH] = upload(graph, drawing.depth_ndc);
         textures[ALCOVE_IMAGE_SECOND_DEPTH] = upload(graph, drawing.depth_ndc);
       }
       if (images.roughness)
-        textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, uniform_image(4, 0.5f));
+        textures[ALCOVE_IMAGE_ROUGHNESS] = upload(graph, uniform(32, 24, {0.5f, 0.5f, 0.5f, 0.5f}));
       add_view_of(graph, view_, 0, settings, textures);
       if (choice.visibility) read_back(graph, textures[ALCOVE_IMAGE_VISIBILITY]);
       if (choice.bent_normal) read_back(graph, textures[ALCOVE_IMAGE_BENT_NORMAL]);

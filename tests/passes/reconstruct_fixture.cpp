@@ -104,9 +104,7 @@ HostImage Reconstruct::noise_raw_occlusion(std::mt19937& random) {
                           [&](std::uint32_t, std::uint32_t) { return noise(random); });
 }
 
-HostImage Reconstruct::no_motion() {
-  return {kWidth, kHeight, std::vector<float>(std::size_t{kWidth} * kHeight * 2), 2};
-}
+HostImage Reconstruct::no_motion() { return uniform(kWidth, kHeight, {0.0f, 0.0f}); }
 
 OcclusionSettings precise(std::uint32_t history_frames) {
   OcclusionSettings settings;

@@ -138,13 +138,9 @@ TEST_F(Reconstruct, AccumulatedBentNormalsRotateWithTheCamera) {
       const Drawing drawing =
           draw(now, kWidth, kHeight,
                {wall(glm::dvec3(1.0, 0.0, 1.0)), wall(glm::dvec3(-1.0, 0.0, 1.0))});
-      const HostImage bent = run_occlusion({.view = now.view,
-                                            .previous_view = frame == 0 ? now.view : before,
-                                            .depth_ndc = drawing.depth_ndc,
-                                            .normals = drawing.normal_vs,
-                                            .settings = settings},
-                                           frame)
-                                 .bent_normal;
+      HostView view = make_view(drawing, settings, frame);
+      view.previous_view = frame == 0 ? now.view : before;
+      const HostImage bent = run_occlusion(view, frame).bent_normal;
       sum = glm::dvec3(0.0);
       for (std::size_t i = 0; i < bent.texels.size(); i += 4) {
         const glm::dvec3 normal(drawing.normal_vs.texels[i], drawing.normal_vs.texels[i + 1],

@@ -17,19 +17,16 @@ class UnobservedDirectionsPass : public PassTest {
 
   // If the volume behind occluders counts as solid, the estimator `connected` differs from
   // `horizons` by little more than the directions that it excludes.
-  HostImage visibility(const TestView& view, const Drawing& drawing,
+  HostImage visibility(const Drawing& drawing,
                        AlcoveEstimator estimator = ALCOVE_ESTIMATOR_CONNECTED,
                        const HostImage& second_layer = {}) {
     OcclusionSettings settings(ALCOVE_QUALITY_HEIGHT_FIELD, kRadius);
     settings.estimator = estimator;
     settings.hidden_occlusion = 1.0f;
     settings.depth_layers = second_layer.texels.empty() ? 1 : 2;
-    return run_occlusion({.view = view.view,
-                          .depth_ndc = drawing.depth_ndc,
-                          .normals = drawing.normal_vs,
-                          .second_depth_ndc = second_layer,
-                          .settings = settings})
-        .visibility;
+    HostView frame = make_view(drawing, settings);
+    frame.second_depth_ndc = second_layer;
+    return run_occlusion(frame).visibility;
   }
 };
 
@@ -82,11 +79,10 @@ TEST_F(UnobservedDirectionsPass,
        VisibilityOfATrenchHalfHiddenByAPlateIsEstimatedFromItsVisibleHalf) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
-    const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()));
+    const HostImage truth = visibility(draw(view, kWidth, kHeight, trench()));
     const Drawing drawing = draw(view, kWidth, kHeight, covered_trench());
     const auto error = [&](AlcoveEstimator estimator) {
-      return mean_difference(visibility(view, drawing, estimator), truth, kWidth / 2 - 2,
-                             kWidth / 2);
+      return mean_difference(visibility(drawing, estimator), truth, kWidth / 2 - 2, kWidth / 2);
     };
     EXPECT_GT(error(ALCOVE_ESTIMATOR_HORIZONS), 0.1);
     EXPECT_LT(3.0 * error(ALCOVE_ESTIMATOR_CONNECTED), error(ALCOVE_ESTIMATOR_HORIZONS));
@@ -96,13 +92,12 @@ TEST_F(UnobservedDirectionsPass,
 TEST_F(UnobservedDirectionsPass, ExcludingDirectionsBeyondTheImageBorderReducesTheErrorInATrench) {
   for (const TestView& view : two_views()) {
     SCOPED_TRACE(view.name);
-    const HostImage truth = visibility(view, draw(view, kWidth, kHeight, trench()));
+    const HostImage truth = visibility(draw(view, kWidth, kHeight, trench()));
     constexpr std::uint32_t kSeen = kWidth / 2 + 2;
     const TestView part_view = columns_of(view, kWidth, 0, kSeen);
     const Drawing drawing = draw(part_view, kSeen, kHeight, trench());
     const auto error = [&](AlcoveEstimator estimator) {
-      return mean_difference(visibility(part_view, drawing, estimator), truth, kWidth / 2 - 2,
-                             kWidth / 2);
+      return mean_difference(visibility(drawing, estimator), truth, kWidth / 2 - 2, kWidth / 2);
     };
     EXPECT_GT(error(ALCOVE_ESTIMATOR_HORIZONS), 0.1);
     EXPECT_LT(error(ALCOVE_ESTIMATOR_CONNECTED), 0.8 * error(ALCOVE_ESTIMATOR_HORIZONS));
@@ -121,9 +116,8 @@ TEST_F(UnobservedDirectionsPass, BackgroundAtTheImageBorderIsAssumedToContinueBe
     constexpr std::uint32_t kSeen = kWidth / 2 + 12;
     const TestView part_view = columns_of(view, kWidth, 0, kSeen);
     const Drawing drawing = draw(part_view, kSeen, kHeight, scene);
-    const HostImage whole = visibility(view, draw(view, kWidth, kHeight, scene));
-    EXPECT_LT(mean_difference(visibility(part_view, drawing), whole, kWidth / 2 - 4, kWidth / 2),
-              2e-3);
+    const HostImage whole = visibility(draw(view, kWidth, kHeight, scene));
+    EXPECT_LT(mean_difference(visibility(drawing), whole, kWidth / 2 - 4, kWidth / 2), 2e-3);
   }
 }
 
@@ -137,8 +131,8 @@ TEST_F(UnobservedDirectionsPass,
       const float tolerance = tilt < 45.0 ? 1e-3f : 0.0125f;
       int open = 0;
       const Drawing drawing = draw(view, 60, 40, {tilted_plane(tilt, 4.5), plate(0.1)});
-      const HostImage image = visibility(view, drawing);
-      const HostImage without = visibility(view, drawing, ALCOVE_ESTIMATOR_HORIZONS);
+      const HostImage image = visibility(drawing);
+      const HostImage without = visibility(drawing, ALCOVE_ESTIMATOR_HORIZONS);
       for (std::size_t i = 0; i < image.texels.size(); ++i) {
         if (without.texels[i] > 0.999f) {
           EXPECT_GT(image.texels[i], 1.0f - 4.0f * (1.0f - without.texels[i]) - tolerance) << i;
@@ -159,12 +153,12 @@ TEST_F(UnobservedDirectionsPass, DirectionsThatTheSecondDepthLayerShowsAreNotExc
     const auto keep = surface.keep;
     surface.keep = [keep](const glm::dvec3& p) { return !keep || (p.x < 0.0 && keep(p)); };
   }
-  const HostImage truth = visibility(view, draw(view, kWidth, kHeight, scene));
+  const HostImage truth = visibility(draw(view, kWidth, kHeight, scene));
   scene.push_back(plate(0.05));
   const Drawing drawing = draw(view, kWidth, kHeight, scene);
   const HostImage second = draw_second_layer(view, kWidth, kHeight, scene);
   const auto error = [&](const HostImage& layer) {
-    return mean_difference(visibility(view, drawing, ALCOVE_ESTIMATOR_CONNECTED, layer), truth,
+    return mean_difference(visibility(drawing, ALCOVE_ESTIMATOR_CONNECTED, layer), truth,
                            kWidth / 2 - 4, kWidth / 2);
   };
   EXPECT_GT(error({}), 0.05);

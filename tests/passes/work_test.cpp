@@ -16,17 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A setting of the comparison.
-struct Case {
-  const char* name;
-  AlcoveQuality quality;
-  void (*change)(HostView& view) = [](HostView&) {};
-  bool area_and_mask = false;
-};
-
-std::ostream& operator<<(std::ostream& out, const Case& of) { return out << of.name; }
-
-class WorkExecution : public CInterface, public testing::WithParamInterface<Case> {
+class WorkExecution : public CInterface, public testing::WithParamInterface<PresetCase> {
  protected:
   // Executes the list of `view` with outputs of its own.
   HostOutputs execute(AlcoveView view, std::uint32_t index) {
@@ -48,12 +38,9 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
 
   // A mask with all values, in columns.
   AlcoveImage create_mask() {
-    const AlcoveImage image = engine().make_image(
-        VK_FORMAT_R8_UNORM, 37, 26, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     Bytes bytes(37UL * 26);
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i % 37 / 10);
-    engine().write(image, bytes);
-    return image;
+    return engine().make_filled(VK_FORMAT_R8_UNORM, 37, 26, bytes);
   }
 
   void SetUp() override {
@@ -70,11 +57,7 @@ class WorkExecution : public CInterface, public testing::WithParamInterface<Case
 };
 
 TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
-  HostView from = draw_view(37, 26, groove(0.8));
-  const OcclusionSettings defaults = from.settings;
-  from.settings = OcclusionSettings(GetParam().quality, 0.5f);
-  from.settings.roughness_channel = defaults.roughness_channel;
-  GetParam().change(from);
+  HostView from = draw_view(37, 26, groove(0.8), 0.5f, GetParam());
   for (std::uint32_t index = 0; index < kSeriesFrames; ++index) {
     SCOPED_TRACE("frame " + std::to_string(index));
     advance(from, index);
@@ -94,51 +77,51 @@ TEST_P(WorkExecution, BackendOfItsOwnMakesTheImagesOfTheLibrary) {
 
 INSTANTIATE_TEST_SUITE_P(
     Settings, WorkExecution,
-    testing::Values(Case{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
-                    Case{"Low", ALCOVE_QUALITY_LOW, request_all_outputs},
-                    Case{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
-                    Case{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
-                    Case{"Ultra", ALCOVE_QUALITY_ULTRA, request_all_outputs},
-                    Case{"HeightField", ALCOVE_QUALITY_HEIGHT_FIELD, request_all_outputs},
-                    Case{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
-                    Case{"ConsoleVisibilityAlone", ALCOVE_QUALITY_CONSOLE},
-                    Case{"DepthCopiedFrom16Bits", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) { view.depth_format = VK_FORMAT_D16_UNORM; }},
-                    Case{"BentNormalAlone", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) {
-                           view.settings.visibility = false;
-                           view.settings.bent_normal = true;
-                         }},
-                    Case{"MultiBounceAlone", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) {
-                           view.settings.visibility = false;
-                           view.multi_bounce = true;
-                         }},
-                    Case{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
-                         [](HostView& view) {
-                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
-                           view.normals = {};
-                         }},
-                    Case{"SpecularByTableAtHalfResolution", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) {
-                           view.settings.specular = ALCOVE_SPECULAR_TABLE;
-                           view.settings.half_resolution = 1;
-                         }},
-                    Case{"TwoDepthLayers", ALCOVE_QUALITY_HIGH,
-                         [](HostView& view) {
-                           request_all_outputs(view);
-                           view.settings.depth_layers = 2;
-                           view.motion = {};
-                         }},
-                    Case{"AreaAndMask", ALCOVE_QUALITY_MEDIUM, request_all_outputs, true},
-                    Case{"HalfResolutionAreaAndMask", ALCOVE_QUALITY_CONSOLE, request_all_outputs,
-                         true},
-                    Case{"HalfResolutionWithoutHistory", ALCOVE_QUALITY_LOW,
-                         [](HostView& view) {
-                           request_all_outputs(view);
-                           view.settings.half_resolution = 1;
-                           view.settings.history_frames = 0;
-                         }}),
+    testing::Values(PresetCase{"Console", ALCOVE_QUALITY_CONSOLE, request_all_outputs},
+                    PresetCase{"Low", ALCOVE_QUALITY_LOW, request_all_outputs},
+                    PresetCase{"Medium", ALCOVE_QUALITY_MEDIUM, request_all_outputs},
+                    PresetCase{"High", ALCOVE_QUALITY_HIGH, request_all_outputs},
+                    PresetCase{"Ultra", ALCOVE_QUALITY_ULTRA, request_all_outputs},
+                    PresetCase{"HeightField", ALCOVE_QUALITY_HEIGHT_FIELD, request_all_outputs},
+                    PresetCase{"VisibilityAlone", ALCOVE_QUALITY_MEDIUM},
+                    PresetCase{"ConsoleVisibilityAlone", ALCOVE_QUALITY_CONSOLE},
+                    PresetCase{"DepthCopiedFrom16Bits", ALCOVE_QUALITY_MEDIUM,
+                               [](HostView& view) { view.depth_format = VK_FORMAT_D16_UNORM; }},
+                    PresetCase{"BentNormalAlone", ALCOVE_QUALITY_MEDIUM,
+                               [](HostView& view) {
+                                 view.settings.visibility = false;
+                                 view.settings.bent_normal = true;
+                               }},
+                    PresetCase{"MultiBounceAlone", ALCOVE_QUALITY_LOW,
+                               [](HostView& view) {
+                                 view.settings.visibility = false;
+                                 view.multi_bounce = true;
+                               }},
+                    PresetCase{"SpecularByTableWithoutNormals", ALCOVE_QUALITY_MEDIUM,
+                               [](HostView& view) {
+                                 view.settings.specular = ALCOVE_SPECULAR_TABLE;
+                                 view.normals = {};
+                               }},
+                    PresetCase{"SpecularByTableAtHalfResolution", ALCOVE_QUALITY_LOW,
+                               [](HostView& view) {
+                                 view.settings.specular = ALCOVE_SPECULAR_TABLE;
+                                 view.settings.half_resolution = 1;
+                               }},
+                    PresetCase{"TwoDepthLayers", ALCOVE_QUALITY_HIGH,
+                               [](HostView& view) {
+                                 request_all_outputs(view);
+                                 view.settings.depth_layers = 2;
+                                 view.motion = {};
+                               }},
+                    PresetCase{"AreaAndMask", ALCOVE_QUALITY_MEDIUM, request_all_outputs, true},
+                    PresetCase{"HalfResolutionAreaAndMask", ALCOVE_QUALITY_CONSOLE,
+                               request_all_outputs, true},
+                    PresetCase{"HalfResolutionWithoutHistory", ALCOVE_QUALITY_LOW,
+                               [](HostView& view) {
+                                 request_all_outputs(view);
+                                 view.settings.half_resolution = 1;
+                                 view.settings.history_frames = 0;
+                               }}),
     [](const auto& of) { return std::string(of.param.name); });
 
 // The list of a frame of 64x48 pixels with a depth image and visibility.
@@ -356,8 +339,9 @@ TEST_F(WorkOfView, InvalidInputIsASentence) {
 
 TEST_F(WorkOfView, PrintedListNamesResourcesShadersConstantsAndHistories) {
   const Description description = describe();
-  std::string text(alcovePrintWork(description.work.get(), nullptr, 0) + 1, '\0');
-  alcovePrintWork(description.work.get(), text.data(), text.size());
+  const std::string text = print([&](char* buffer, std::size_t size) {
+    return alcovePrintWork(description.work.get(), buffer, size);
+  });
   EXPECT_THAT(text, HasSubstr("raw occlusion: transient, VK_FORMAT_R32G32_UINT, 16x12"));
   EXPECT_THAT(text, HasSubstr("0 gtao: shader gtao, 2x2x1 groups"));
   EXPECT_THAT(text, HasSubstr("kSliceCount=2"));

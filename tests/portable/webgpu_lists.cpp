@@ -43,16 +43,10 @@ Json json(const AlcoveWorkDispatch& of) {
 
 class WebGpuLists : public CInterface {
  protected:
-  // Writes a series of frames of 240x136 pixels with the settings of a preset, which `change`
-  // changes.
-  void write(
-      AlcoveQuality quality, void (*change)(HostView& view) = [](HostView&) {}) {
-    HostView from = draw_view(240, 136);
-    const std::uint32_t roughness_channel = from.settings.roughness_channel;
-    from.settings = OcclusionSettings(quality, 0.5f);
-    from.settings.roughness_channel = roughness_channel;
+  // Writes a series of frames of 240x136 pixels to a file that is named after the preset.
+  void write(const PresetCase& preset) {
+    HostView from = draw_view(240, 136, ball_on_floor(), 0.5f, preset);
     from.motion = {};
-    change(from);
     Json all;
     for (const InputMember& each : kInputs) all["inputs"][each.role] = (from.*each.texels).texels;
     const auto work = std::make_unique<AlcoveWork>();
@@ -68,17 +62,17 @@ class WebGpuLists : public CInterface {
       for (const OutputMember& each : kOutputs)
         frame["results"][each.role] = (results.*each.texels).texels;
     }
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    ASSERT_TRUE(std::ofstream(name + ".json") << all);
+    ASSERT_TRUE(std::ofstream(std::string(preset.name) + ".json") << all);
   }
 };
 
-TEST_F(WebGpuLists, low) { write(ALCOVE_QUALITY_LOW); }
-TEST_F(WebGpuLists, medium) { write(ALCOVE_QUALITY_MEDIUM); }
-TEST_F(WebGpuLists, console) { write(ALCOVE_QUALITY_CONSOLE); }
-TEST_F(WebGpuLists, all_outputs) { write(ALCOVE_QUALITY_LOW, request_all_outputs); }
-TEST_F(WebGpuLists, table) {
-  write(ALCOVE_QUALITY_LOW, [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; });
+TEST_F(WebGpuLists, AreWritten) {
+  write({"low", ALCOVE_QUALITY_LOW});
+  write({"medium", ALCOVE_QUALITY_MEDIUM});
+  write({"console", ALCOVE_QUALITY_CONSOLE});
+  write({"all_outputs", ALCOVE_QUALITY_LOW, request_all_outputs});
+  write({"table", ALCOVE_QUALITY_LOW,
+         [](HostView& view) { view.settings.specular = ALCOVE_SPECULAR_TABLE; }});
 }
 
 }  // namespace
