@@ -87,13 +87,11 @@ HostBuffer::~HostBuffer() {
 }
 
 framegraph::ImportedBuffer HostBuffer::import() const {
-  framegraph::ImportedBuffer import;
-  import.buffer = buffer_;
-  import.desc.size = size_;
-  import.usage = usage_;
-  import.has_contents = true;
-  import.final_state = framegraph::buffer_access::host_read;
-  return import;
+  return {.buffer = buffer_,
+          .desc = {.size = size_},
+          .usage = usage_,
+          .has_contents = true,
+          .final_state = framegraph::buffer_access::host_read};
 }
 
 tl::expected<std::unique_ptr<Gpu>, std::string> Gpu::create(

@@ -64,12 +64,7 @@ GpuImage::~GpuImage() {
 }
 
 framegraph::ImportedTexture GpuImage::import() const {
-  framegraph::ImportedTexture import;
-  import.image = image_;
-  import.view = view_;
-  import.desc = desc_;
-  import.usage = usage_;
-  return import;
+  return {.image = image_, .view = view_, .desc = desc_, .usage = usage_};
 }
 
 framegraph::ImportedTexture GpuImage::import_to_fill(framegraph::State final_state) const {

@@ -159,32 +159,18 @@ Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, co
   return draw_hits(view, width, height, scene, [&](const Ray& ray) { return cast(scene, ray); });
 }
 
-Scene scaled(const Scene& scene, double scale) {
+Scene transform(const Scene& scene, double scale, const glm::dvec3& shift) {
   Scene result;
   for (const Shape& surface : scene) {
-    Shape larger;
-    larger.meet = [=](const Ray& ray) {
-      std::vector<Hit> hits = surface.meet({ray.from / scale, ray.along / scale});
-      for (Hit& hit : hits) hit.position *= scale;
+    Shape shape;
+    shape.meet = [=](const Ray& ray) {
+      std::vector<Hit> hits = surface.meet({(ray.from - shift) / scale, ray.along / scale});
+      for (Hit& hit : hits) hit.position = hit.position * scale + shift;
       return hits;
     };
-    if (surface.keep) larger.keep = [=](const glm::dvec3& p) { return surface.keep(p / scale); };
-    result.push_back(std::move(larger));
-  }
-  return result;
-}
-
-Scene shifted(const Scene& scene, const glm::dvec3& shift) {
-  Scene result;
-  for (const Shape& surface : scene) {
-    Shape further;
-    further.meet = [=](const Ray& ray) {
-      std::vector<Hit> hits = surface.meet({ray.from - shift, ray.along});
-      for (Hit& hit : hits) hit.position += shift;
-      return hits;
-    };
-    if (surface.keep) further.keep = [=](const glm::dvec3& p) { return surface.keep(p - shift); };
-    result.push_back(std::move(further));
+    if (surface.keep)
+      shape.keep = [=](const glm::dvec3& p) { return surface.keep((p - shift) / scale); };
+    result.push_back(std::move(shape));
   }
   return result;
 }

@@ -81,9 +81,8 @@ struct Drawing {
 
 Drawing draw(const TestView& view, std::uint32_t width, std::uint32_t height, const Scene& scene);
 
-// Returns a scaled copy of a scene.
-Scene scaled(const Scene& scene, double scale);
-Scene shifted(const Scene& scene, const glm::dvec3& shift);
+// Returns a copy of a scene, scaled about the eye and then moved.
+Scene transform(const Scene& scene, double scale, const glm::dvec3& shift = glm::dvec3(0.0));
 
 // Returns the depth of the nearest faces that face away from the eye.
 HostImage draw_back_faces(const TestView& view, std::uint32_t width, std::uint32_t height,

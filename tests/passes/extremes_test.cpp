@@ -65,7 +65,7 @@ TEST_P(Extremes, ImagesWithHistoryAreIndependentOfTheUnitOfLength) {
           orthographic ? orthographic_view("", 3.0 * unit, 2.0 * unit, 0.125 * unit, 16.125 * unit)
                        : perspective_view("", 1.2, 1.8, 0.125 * unit, kInfinity, true);
       const std::vector<Images> series =
-          strafe(view, scaled(ball_on_floor(), unit), 0.05 * unit,
+          strafe(view, transform(ball_on_floor(), unit), 0.05 * unit,
                  all_outputs(GetParam(), static_cast<float>(unit)), 3);
       if (exponent == 0) expected = series;
       for (std::size_t i = 0; i < series.size(); ++i) expect_equal(series[i], expected[i]);
@@ -83,7 +83,7 @@ TEST_P(Extremes, OrthographicNearPlaneMayBeInFrontOfOrBehindTheEye) {
       SCOPED_TRACE(testing::Message() << scene.name << " moved by " << shift);
       const TestView view = orthographic_view("", 3.0, 2.0, 0.125 - shift, 16.125 - shift);
       const std::vector<Images> series =
-          strafe(view, shifted(scene.scene, {0.0, 0.0, shift}), 0.05, settings, 4);
+          strafe(view, transform(scene.scene, 1.0, {0.0, 0.0, shift}), 0.05, settings, 4);
       if (shift == 0.0) expected = series;
       // At a distance of 1024 depths are rounded more; the largest difference is .0020.
       for (std::size_t i = 0; i < series.size(); ++i)

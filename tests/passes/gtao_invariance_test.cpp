@@ -80,7 +80,7 @@ TEST_F(GtaoInvariance, OrthographicViewGivesTheVisibilityOfANarrowPerspectiveFro
   for (const AlcoveEstimator estimator : kEstimators) {
     for (const NamedScene& scene : gtao_scenes()) {
       SCOPED_TRACE(scene.name);
-      const Scene moved = shifted(scene.scene, {0.0, 0.0, -away});
+      const Scene moved = transform(scene.scene, 1.0, {0.0, 0.0, -away});
       const OcclusionSettings settings = unfiltered(estimator, 1.0f);
       const Difference apart =
           difference(visibility(flat, scene.scene, settings), visibility(narrow, moved, settings));

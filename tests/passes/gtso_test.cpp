@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "drawing.h"
@@ -15,6 +14,7 @@
 #include "random_input.h"
 #include "single_passes.h"
 #include "views.h"
+#include "work/rigid_transform.h"
 
 namespace alcove::passes {
 namespace {
@@ -103,9 +103,7 @@ class GtsoPass : public PassTest {
 };
 
 maths::Projection projection_of(const AlcoveCamera& view) {
-  maths::mat4 clip_from_view;
-  std::memcpy(&clip_from_view[0][0], view.clip_from_view, sizeof(clip_from_view));
-  return maths::make_projection(clip_from_view, kWidth, kHeight).value();
+  return maths::make_projection(to_mat4(view.clip_from_view), kWidth, kHeight).value();
 }
 
 // Returns the value that the pass should write at a pixel.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/glm.hpp>
 #include <utility>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "maths/projection.h"
 #include "pass_fixture.h"
 #include "views.h"
+#include "work/rigid_transform.h"
 
 namespace alcove::passes {
 namespace {
@@ -17,9 +17,7 @@ namespace {
 using framegraph::Graph;
 
 glm::dmat4 clip_from_view(const TestView& view) {
-  glm::mat4 single;
-  std::memcpy(&single[0][0], view.view.clip_from_view, sizeof(single));
-  return glm::dmat4(single);
+  return glm::dmat4(to_mat4(view.view.clip_from_view));
 }
 
 // Returns the linear depth by inverting the projection matrix, which is not the shader's formula.

@@ -96,10 +96,6 @@ std::vector<Case> open_planes() {
   return all;
 }
 
-void round_to_16_bits(HostImage& depth_ndc) {
-  for (float& depth : depth_ndc.texels) depth = std::round(depth * 65535.0f) / 65535.0f;
-}
-
 class OpenPlane : public PassTest {
  protected:
   HostOutputs frame(const Drawing& drawing, const OcclusionSettings& settings,
@@ -115,7 +111,8 @@ TEST_F(OpenPlane, IsOpenInEveryPreset) {
     Drawing drawing = draw(each.view, kWidth, kHeight, {each.plane});
     const HostImage normals = drawing.normal_vs;
     for (float& component : drawing.normal_vs.texels) component *= each.normals;
-    if (each.depth_format == VK_FORMAT_D16_UNORM) round_to_16_bits(drawing.depth_ndc);
+    if (each.depth_format == VK_FORMAT_D16_UNORM)
+      drawing.depth_ndc = with_16_bits(drawing.depth_ndc);
     for (std::size_t i = 0; i < kQualityNames.size(); ++i) {
       const auto quality = static_cast<AlcoveQuality>(i);
       if (!each.every_preset && quality != ALCOVE_QUALITY_MEDIUM) continue;
@@ -146,7 +143,7 @@ TEST_F(OpenPlane, GrooveKeepsItsOcclusionWith16BitDepth) {
       draw(perspective_view("", 1.2, 1.8, 0.1, 100.0, false), kWidth, kHeight, groove(0.8));
   const OcclusionSettings settings = all_outputs(ALCOVE_QUALITY_MEDIUM, 0.5f);
   const HostImage expected = frame(drawing, settings, VK_FORMAT_D32_SFLOAT, 0).visibility;
-  round_to_16_bits(drawing.depth_ndc);
+  drawing.depth_ndc = with_16_bits(drawing.depth_ndc);
   const HostImage image = frame(drawing, settings, VK_FORMAT_D16_UNORM, 0).visibility;
   EXPECT_LT(rms(image, expected), 0.02);
   EXPECT_LT(std::ranges::min(image.texels), 0.75f);

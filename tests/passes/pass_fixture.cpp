@@ -78,6 +78,11 @@ HostImage uniform(std::uint32_t width, std::uint32_t height, const std::vector<f
   return image;
 }
 
+HostImage with_16_bits(HostImage depth) {
+  for (float& texel : depth.texels) texel = std::round(texel * 65535.0f) / 65535.0f;
+  return depth;
+}
+
 VkFormat float_format(std::uint32_t channels) {
   return channels == 1   ? VK_FORMAT_R32_SFLOAT
          : channels == 2 ? VK_FORMAT_R32G32_SFLOAT

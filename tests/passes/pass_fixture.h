@@ -36,6 +36,8 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Returns an image of which each pixel is `texel`.
 HostImage uniform(std::uint32_t width, std::uint32_t height, const std::vector<float>& texel);
+// Returns the depths that a buffer of 16 bits would hold.
+HostImage with_16_bits(HostImage depth);
 // Returns the format of 32-bit floats with 1, 2 or 4 channels.
 VkFormat float_format(std::uint32_t channels);
 // Returns the bytes of a texel, and texels as floats, of a format that the passes write or of

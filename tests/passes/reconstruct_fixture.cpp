@@ -46,12 +46,6 @@ HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
   return stored;
 }
 
-// Returns the depths that a buffer of 16 bits would hold.
-HostImage with_16_bits(HostImage depth) {
-  for (float& texel : depth.texels) texel = std::round(texel * 65535.0f) / 65535.0f;
-  return depth;
-}
-
 }  // namespace
 
 HostImage Reconstruct::reconstruct(const Input& input, const OcclusionSettings& settings) {
