@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+#include <iterator>
 #include <utility>
 
 namespace alcove::sample {
@@ -18,6 +21,13 @@ framegraph::DeviceHandles device_handles(const VulkanDevice& device) {
   handles.queues[static_cast<std::size_t>(framegraph::QueueClass::graphics)] = {
       device.queue(), device.queue_family()};
   return handles;
+}
+
+template <typename Number>
+Number read(const std::byte* data) {
+  Number value;
+  std::memcpy(&value, data, sizeof(value));
+  return value;
 }
 
 // Fills all mips but mip 0 of a colour texture.
@@ -90,7 +100,6 @@ framegraph::ImportedBuffer HostBuffer::import() const {
   return {.buffer = buffer_,
           .desc = {.size = size_},
           .usage = usage_,
-          .has_contents = true,
           .final_state = framegraph::buffer_access::host_read};
 }
 
@@ -191,6 +200,33 @@ void add_read_back(Graph& graph, Texture texture, const HostBuffer& target, std:
     vkCmdCopyImageToBuffer(context.commands, context.image(texture),
                            VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, context.buffer(filled), 1, &copy);
   });
+}
+
+TexelLayout texel_layout(VkFormat format) {
+  using Row = std::pair<VkFormat, TexelLayout>;
+  constexpr Row kLayouts[] = {{VK_FORMAT_R8_UNORM, {1, 1}},
+                              {VK_FORMAT_R16_SFLOAT, {1, 2}},
+                              {VK_FORMAT_R16G16_SFLOAT, {2, 2}},
+                              {VK_FORMAT_R16G16B16A16_SFLOAT, {4, 2}},
+                              {VK_FORMAT_R32_SFLOAT, {1, 4}},
+                              {VK_FORMAT_D32_SFLOAT, {1, 4}},
+                              {VK_FORMAT_R32G32_SFLOAT, {2, 4}},
+                              {VK_FORMAT_R32G32B32A32_SFLOAT, {4, 4}},
+                              {VK_FORMAT_R8G8B8A8_SNORM, {4, 1, true}}};
+  const auto* const row = std::ranges::find(kLayouts, format, &Row::first);
+  return row != std::end(kLayouts) ? row->second : TexelLayout{4, 1};  // channels of 8 bits
+}
+
+float read_channel(const std::byte* data, const TexelLayout& layout) {
+  switch (layout.bytes) {
+    case 1:
+      return layout.is_signed ? std::max(float(read<std::int8_t>(data)) / 127.0f, -1.0f)
+                              : float(read<std::uint8_t>(data)) / 255.0f;
+    case 2:
+      return glm::unpackHalf1x16(read<std::uint16_t>(data));
+    default:
+      return read<float>(data);
+  }
 }
 
 }  // namespace alcove::sample

@@ -121,4 +121,14 @@ framegraph::Texture add_copy(framegraph::Graph& graph, const HostBuffer& source,
 void add_read_back(framegraph::Graph& graph, framegraph::Texture texture, const HostBuffer& target,
                    std::uint32_t mip = 0);
 
+// The texels of a format that is read back: their channels, and the bytes of a channel.
+struct TexelLayout {
+  std::uint32_t channels;
+  std::uint32_t bytes;
+  bool is_signed = false;  // of 8 bits
+};
+[[nodiscard]] TexelLayout texel_layout(VkFormat format);
+// Returns a channel of such a texel as a float.
+[[nodiscard]] float read_channel(const std::byte* data, const TexelLayout& layout);
+
 }  // namespace alcove::sample

@@ -76,8 +76,7 @@ framegraph::ImportedTexture GpuImage::import_to_fill(framegraph::State final_sta
 
 framegraph::ImportedTexture GpuImage::import_to_read(framegraph::State initial_state) const {
   framegraph::ImportedTexture result = import();
-  result.initial_state = initial_state;
-  result.final_state = initial_state;
+  result.initial_state = result.final_state = initial_state;
   return result;
 }
 

@@ -54,7 +54,7 @@ AlcoveImage EngineRun::create_filled(VkFormat format, VkExtent2D size,
 
 template <typename Texel>
 std::vector<Texel> EngineRun::read(const AlcoveImage& image) {
-  const passes::Bytes bytes = device_.read(image, sizeof(Texel));
+  const passes::Bytes bytes = device_.read(image);
   std::vector<Texel> texels(bytes.size() / sizeof(Texel));
   std::memcpy(texels.data(), bytes.data(), bytes.size());
   return texels;

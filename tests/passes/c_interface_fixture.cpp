@@ -157,8 +157,7 @@ AlcoveImage CInterface::output(VkFormat format, std::uint32_t width, std::uint32
 }
 
 HostImage CInterface::read(const AlcoveImage& image) {
-  return decode(engine_->read(image, texel_bytes(image.format)), image.format, image.width,
-                image.height);
+  return decode(engine_->read(image), image.format, image.width, image.height);
 }
 
 HostOutputs CInterface::read_results(const AlcoveView& view) {

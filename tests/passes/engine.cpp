@@ -173,9 +173,11 @@ void TestEngine::write(const AlcoveImage& image, std::span<const std::byte> texe
   wait();
 }
 
-Bytes TestEngine::read(const AlcoveImage& image, std::size_t texel_bytes) {
-  const auto buffer = create_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                    std::size_t{image.width} * image.height * texel_bytes);
+Bytes TestEngine::read(const AlcoveImage& image) {
+  const sample::TexelLayout layout = sample::texel_layout(image.format);
+  const auto buffer =
+      create_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                    std::size_t{image.width} * image.height * layout.channels * layout.bytes);
   submit(0, [&](VkCommandBuffer commands) {
     constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     const VkBufferImageCopy copy = whole(image);

@@ -64,7 +64,7 @@ class TestEngine {
   void write(const AlcoveImage& image, std::span<const std::byte> texels,
              const AlcoveState& final_state = kResting);
   // Returns the texels of an image, which is in its final state. Waits for the device.
-  Bytes read(const AlcoveImage& image, std::size_t texel_bytes);
+  Bytes read(const AlcoveImage& image);
 
   // Waits for the previous frame of `slot`, and calls `record` with the command buffer of the slot.
   void record(std::uint32_t slot, const std::function<void(VkCommandBuffer)>& record);

@@ -18,56 +18,12 @@ namespace alcove::passes {
 using framegraph::Graph;
 using framegraph::Texture;
 
-namespace {
-
-struct TexelLayout {
-  VkFormat format = VK_FORMAT_UNDEFINED;
-  std::uint32_t channels = 1;
-  std::uint32_t channel_bytes = 4;
-};
-
-TexelLayout find_layout(VkFormat format) {
-  constexpr TexelLayout kLayouts[] = {{VK_FORMAT_R8_UNORM, 1, 1},
-                                      {VK_FORMAT_R8G8B8A8_SNORM, 4, 1},
-                                      {VK_FORMAT_R16_SFLOAT, 1, 2},
-                                      {VK_FORMAT_R16G16_SFLOAT, 2, 2},
-                                      {VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
-                                      {VK_FORMAT_R32_SFLOAT, 1, 4},
-                                      {VK_FORMAT_R32G32_SFLOAT, 2, 4},
-                                      {VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}};
-  const auto* const layout = std::ranges::find(kLayouts, format, &TexelLayout::format);
-  if (layout != std::end(kLayouts)) return *layout;
-  ADD_FAILURE() << "The fixture cannot read format " << format << " back.";
-  return {};
-}
-
-}  // namespace
-
-std::size_t texel_bytes(VkFormat format) {
-  return std::size_t{find_layout(format).channels} * find_layout(format).channel_bytes;
-}
-
 HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_t width,
                  std::uint32_t height) {
-  const auto [unused, channels, size] = find_layout(format);
-  HostImage image{width, height, {}, channels};
-  image.texels.resize(std::size_t{width} * height * channels);
-  for (std::size_t i = 0; i < image.texels.size(); ++i) {
-    const std::byte* from = bytes.data() + i * size;
-    float& texel = image.texels[i];
-    if (size == 4) {
-      std::memcpy(&texel, from, 4);
-    } else if (size == 2) {
-      std::uint16_t half = 0;
-      std::memcpy(&half, from, 2);
-      texel = glm::unpackHalf1x16(half);
-    } else if (format == VK_FORMAT_R8_UNORM) {
-      texel = static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
-    } else {
-      const auto stored = static_cast<std::int8_t>(*from);
-      texel = std::max(static_cast<float>(stored) / 127.0f, -1.0f);
-    }
-  }
+  const sample::TexelLayout layout = sample::texel_layout(format);
+  HostImage image{width, height, {}, layout.channels};
+  for (std::size_t i = 0; i < std::size_t{width} * height * layout.channels; ++i)
+    image.texels.push_back(sample::read_channel(&bytes[i * layout.bytes], layout));
   return image;
 }
 
@@ -168,8 +124,9 @@ Texture PassTest::fill(Graph& graph, Texture target, const HostImage& image) {
 void PassTest::read_back(Graph& graph, Texture texture) {
   const VkExtent3D extent = graph.extent(texture);
   const VkFormat format = graph.format(texture);
+  const sample::TexelLayout layout = sample::texel_layout(format);
   auto buffer = sample::HostBuffer::create(
-      gpu().device(), std::size_t{extent.width} * extent.height * texel_bytes(format),
+      gpu().device(), std::size_t{extent.width} * extent.height * layout.channels * layout.bytes,
       VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   ASSERT_TRUE(buffer) << buffer.error();
   downloads_.push_back({std::move(*buffer), format, extent});

@@ -40,9 +40,7 @@ HostImage uniform(std::uint32_t width, std::uint32_t height, const std::vector<f
 HostImage with_16_bits(HostImage depth);
 // Returns the format of 32-bit floats with 1, 2 or 4 channels.
 VkFormat float_format(std::uint32_t channels);
-// Returns the bytes of a texel, and texels as floats, of a format that the passes write or of
-// floats.
-std::size_t texel_bytes(VkFormat format);
+// Returns texels of a format that the passes write, or of floats, as floats.
 HostImage decode(std::span<const std::byte> bytes, VkFormat format, std::uint32_t width,
                  std::uint32_t height);
 // Returns the root mean square of the differences between two images of one size.
