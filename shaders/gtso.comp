@@ -1,4 +1,5 @@
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 
@@ -8,36 +9,32 @@
 #include "gtso_parameters.h"
 #include "maths/gtso.h"
 #include "maths/gtso_table.h"
-#include "maths/normal_encoding.h"
-#include "maths/projection.h"
 #include "maths/slice.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool kRoughnessTexture = false;
 layout(constant_id = 1) const int kRoughnessChannel = 0;
-layout(constant_id = 2) const uint kNormalEncoding = 0;  // AlcoveNormalEncoding of normal_image
-layout(constant_id = 3) const bool kAreas = false;       // images are read or written in part
+layout(constant_id = 2) const uint kNormalEncoding = 0;  // an AlcoveNormalEncoding
+layout(constant_id = 3) const bool kAreas = false;  // images are read or written in part (areas.h)
+layout(constant_id = 4) const bool kPerspective = true;
+layout(constant_id = 5) const bool kReversed = false;  // raw depth is 1 at the near plane
 
 layout(set = 0, binding = 0) uniform Parameters { GtsoParameters parameters; };
 layout(set = 0, binding = 1) uniform texture2D visibility_image;
 layout(set = 0, binding = 2) uniform texture2D bent_normal_image;
 layout(set = 0, binding = 3) uniform texture2D normal_image;
-layout(set = 0, binding = 4) uniform texture2D depth_image;      // linear
+layout(set = 0, binding = 4) uniform texture2D depth_image;      // as the projection wrote it
 layout(set = 0, binding = 5) uniform texture2D roughness_image;  // read with kRoughnessTexture
 layout(set = 0, binding = 6) uniform writeonly image2D result_image;
 layout(set = 0, binding = 7) readonly buffer Table { uint gtso_table[]; };
 
+#define WRITES_OUTPUTS
+#include "areas.h"
 #include "fetch_roughness.h"
+#include "traced_normal.h"
 
-// A pixel's position in the images of visibility, bent normals and the result. Pixels count from
-// the corner of the area that is read.
-ivec2 in_outputs(ivec2 pixel) { return kAreas ? pixel + parameters.written.zw : pixel; }
-
-vec3 fetch_direction(texture2D image, ivec2 pixel, uint encoding, vec3 instead) {
-  vec3 given = decode_normal(texelFetch(image, pixel, 0).xyz, encoding);
-  return has_direction(given) ? normalize(mat3(parameters.view_from_normal) * given) : instead;
-}
+vec3 to_view_space(vec3 direction) { return mat3(parameters.view_from_normal) * direction; }
 
 float fetch_entry(uvec4 entry) {
   uint index = gtso_index(entry);
@@ -58,29 +55,19 @@ float occlusion_by_table(float visibility, vec3 bent, vec3 normal, vec3 reflecti
   return sum;
 }
 
-float occlusion_of(ivec2 pixel, vec3 normal, vec3 view) {
+float occlusion_of(ivec2 pixel) {
+  vec3 view = direction_to_eye(vec2(pixel) + 0.5);
+  vec3 normal = traced_normal(pixel, to_view_space(fetch_given_normal(pixel)), view);
+  vec3 given = texelFetch(bent_normal_image, in_outputs(pixel), 0).xyz;
+  vec3 bent = has_direction(given) ? normalize(to_view_space(given)) : normal;
   float visibility = converged_visibility(texelFetch(visibility_image, in_outputs(pixel), 0).r);
-  float roughness = fetch_roughness(kAreas ? pixel + parameters.origins.zw : pixel);
-  vec3 bent = raised_bent_normal(fetch_direction(bent_normal_image, in_outputs(pixel), 0u, normal),
-                                 normal, visibility);
-  return occlusion_by_table(visibility, bent, normal, mirror_direction(normal, view), roughness);
+  return occlusion_by_table(visibility, raised_bent_normal(bent, normal, visibility), normal,
+                            mirror_direction(normal, view), fetch_roughness(in_inputs(pixel)));
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, parameters.size_px))) return;
-  pixel = kAreas ? pixel + parameters.written.xy : pixel;
-  float depth = texelFetch(depth_image, pixel, 0).r;
-  float result = 1.0;
-  if (!is_sky_depth(depth)) {
-    vec2 uv = pixel_centre_uv(parameters.projection, uvec2(pixel));
-    vec3 view =
-        view_direction(parameters.projection, position_vs(parameters.projection, uv, depth));
-    vec3 normal =
-        facing_normal(fetch_direction(normal_image, kAreas ? pixel + parameters.origins.xy : pixel,
-                                      kNormalEncoding, view),
-                      view);
-    result = occlusion_of(pixel, normal, view);
-  }
-  imageStore(result_image, in_outputs(pixel), vec4(result));
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + first_written();
+  if (any(greaterThan(pixel, last_written()))) return;
+  bool sky = is_sky_ndc(fetch_depth(pixel), kReversed);
+  imageStore(result_image, in_outputs(pixel), vec4(sky ? 1.0 : occlusion_of(pixel)));
 }

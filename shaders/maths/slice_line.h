@@ -20,7 +20,6 @@
 
 #include "constants.h"
 #include "language.h"
-#include "projection.h"
 
 ALCOVE_MATHS_BEGIN
 
@@ -76,12 +75,6 @@ struct SliceLine {
   float y_per_step;   // change of y w per pixel along direction_px at constant depth
   float y_per_depth;  // change of y per scene unit of linear depth towards the eye
 };
-
-// Returns the change of the view ray's x and y, at unit linear depth, from one pixel to the next.
-ALCOVE_INLINE vec2 ray_per_px(Projection p) {
-  return vec2((p.uv_to_slope.x + p.uv_to_origin.x) * p.texel_uv.x,
-              (p.uv_to_slope.y + p.uv_to_origin.y) * p.texel_uv.y);
-}
 
 // Returns the line of the slice that is spanned by `view`, the unit view direction at the shaded
 // point, and `direction`, a unit vector perpendicular to it. Both are in view space. `per_px` is

@@ -13,12 +13,10 @@
 #include "gtao_parameters.h"
 #include "gtso_parameters.h"
 #include "inspect_parameters.h"
-#include "linear_depth_parameters.h"
-#include "maths/projection.h"
 #include "multi_bounce_parameters.h"
-#include "normals_parameters.h"
 #include "parameter_layouts_spirv.h"
 #include "reconstruct_parameters.h"
+#include "surface_parameters.h"
 #include "upsample_parameters.h"
 
 namespace alcove::maths_test {
@@ -28,15 +26,13 @@ namespace {
   { #type, std::uint32_t(offsetof(maths::type, member)) }
 
 const std::map<std::string, std::uint32_t> kLastOffsets = {
-    ALCOVE_LAST(Projection, near_far),
     ALCOVE_LAST(GtaoParameters, depth_step_per_inverse_depth),
     ALCOVE_LAST(GtsoParameters, roughness),
     ALCOVE_LAST(DepthCopyParameters, sky),
-    ALCOVE_LAST(LinearDepthParameters, origin),
     ALCOVE_LAST(InspectParameters, has_motion),
     ALCOVE_LAST(MultiBounceParameters, size_px),
-    ALCOVE_LAST(NormalsParameters, slope),
     ALCOVE_LAST(ReconstructParameters, dither_offset),
+    ALCOVE_LAST(SurfaceParameters, inverse_depth_from_ndc),
     ALCOVE_LAST(UpsampleParameters, intensity),
 };
 
@@ -61,10 +57,6 @@ TEST(ShaderParameters, StructsHaveTheSameLayoutInUniformBlocksAndInCpp) {
     ASSERT_TRUE(offsets.contains(name)) << name;
     EXPECT_EQ(offsets[name], offset) << name;
   }
-}
-
-TEST(ShaderParameters, ProjectionSizeIsAMultipleOf16Bytes) {
-  EXPECT_EQ(sizeof(maths::Projection) % 16, 0u);
 }
 
 }  // namespace

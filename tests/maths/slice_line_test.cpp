@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "maths/connected_samples.h"
-#include "maths/make_projection.h"
+#include "maths/projection.h"
 #include "maths/slice.h"
 #include "projection_truth.h"
 #include "random_input.h"
@@ -49,17 +49,16 @@ struct Setting {
       : projection(some_projection(random)),
         pixel{random.uniform(0, kWidth), random.uniform(0, kHeight)},
         depth(random.uniform(1.0f, 20.0f)),
-        position(maths::position_vs(projection, pixel * projection.texel_uv, depth)),
-        view(maths::view_direction(projection, position)),
+        position(position_at(projection, pixel, depth)),
+        view(view_at(projection, pixel)),
         normal(maths::facing_normal(random.unit_vector(), view)),
         direction(maths::slice_direction(maths::make_view_basis(view), random.uniform(0, 6.28f))),
-        line(maths::make_slice_line(maths::ray_per_px(projection), direction, view)) {}
+        line(maths::make_slice_line(projection.ray_per_px(), direction, view)) {}
 
-  bool perspective() const { return projection.eye.w > 0.0f; }
+  bool perspective() const { return projection.perspective; }
 
   vec3 delta(vec2 offset_px, float sample_depth) const {
-    return maths::position_vs(projection, (pixel + offset_px) * projection.texel_uv, sample_depth) -
-           position;
+    return position_at(projection, pixel + offset_px, sample_depth) - position;
   }
 
   vec2 point(float offset_px, float sample_depth) const {
@@ -131,7 +130,7 @@ TEST(SliceLine, SampleOfATiltedPlaneSnappedToATexelCentreStillLiesOnThatPlane) {
     const Setting s(random);
     if (dot(s.normal, s.view) < 0.1f) continue;
     const maths::TangentPlane tangent = maths::make_tangent_plane(
-        maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
+        s.projection.ray_per_px(), s.normal, s.view, s.depth, s.perspective());
     const vec2 exact = s.line.direction_px * random.uniform(2.0f, 40.0f);
     const vec2 snapped = round(exact);
     const float inverse_depth = tangent.inverse_depth + dot(snapped, tangent.gradient);
@@ -174,7 +173,7 @@ TEST(SliceLine, SampleCountsAsLyingOnTheTangentPlaneOnlyIfItsDepthIsCloseToThePl
   for (int i = 0; i < 1000; ++i) {
     const Setting s(random);
     const maths::TangentPlane tangent = maths::make_tangent_plane(
-        maths::ray_per_px(s.projection), s.normal, s.view, s.depth, s.perspective());
+        s.projection.ray_per_px(), s.normal, s.view, s.depth, s.perspective());
     const float offset_px = random.uniform(1.3f, 60.0f);
     const float limit = offset_px / tangent.fading;
     EXPECT_FALSE(maths::lies_on_tangent_plane(tangent.fading, 1.01f * limit, offset_px));
@@ -190,9 +189,8 @@ TEST(SliceLine, ImageLineOfASliceHasTheProjectedDirectionOfTheSlice) {
     EXPECT_NEAR(length(s.line.direction_px), 1.0f, 1e-5f);
     EXPECT_GE(s.line.x_per_step, 0.0f);
     const vec3 step = 1e-3f * s.depth * s.direction;
-    const vec2 along = (uv_of_position(s.projection, s.position + step) -
-                        uv_of_position(s.projection, s.position - step)) *
-                       s.projection.size_px;
+    const vec2 along =
+        pixel_of(s.projection, s.position + step) - pixel_of(s.projection, s.position - step);
     EXPECT_GT(dot(normalize(along), s.line.direction_px), 0.999f);
   }
 }
@@ -205,14 +203,13 @@ TEST(SliceLine, RadiusInPixelsApproximatesTheSilhouetteOfASphereOfThatRadius) {
     const float radius = 0.2f * s.depth;
     // The silhouette of the sphere in this slice: the point at which a view ray within the slice
     // touches the sphere.
-    const bool perspective = s.projection.eye.w > 0.0f;
+    const bool perspective = s.perspective();
     const float away = length(s.position);
     const float sine = radius / away;
     const vec3 touch = perspective ? s.position + s.view * (radius * sine) +
                                          s.direction * (radius * std::sqrt(1.0f - sine * sine))
                                    : s.position + s.direction * radius;
-    const vec2 touch_px = uv_of_position(s.projection, touch) * s.projection.size_px;
-    const float expected = distance(touch_px, s.pixel);
+    const float expected = distance(pixel_of(s.projection, touch), s.pixel);
     const float inverse_depth = s.perspective() ? 1.0f / s.depth : s.depth;
     const float reach_px = maths::sphere_reach(s.line, radius, inverse_depth, s.perspective()) *
                            radius / s.line.x_per_step;

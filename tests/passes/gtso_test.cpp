@@ -9,8 +9,9 @@
 #include "gtso_table.h"
 #include "maths/gtso.h"
 #include "maths/gtso_table.h"
-#include "maths/make_projection.h"
+#include "maths/projection.h"
 #include "maths/slice.h"
+#include "projection_truth.h"
 #include "random_input.h"
 #include "single_passes.h"
 #include "views.h"
@@ -25,7 +26,6 @@ using glm::vec3;
 
 constexpr std::uint32_t kWidth = 45;
 constexpr std::uint32_t kHeight = 31;
-constexpr float kSky = 1e12f;
 
 OcclusionSettings settings_of(float roughness = 0.5f, std::uint32_t channel = 0) {
   OcclusionSettings settings;
@@ -52,7 +52,7 @@ vec3 direction(const HostImage& image, std::uint32_t x, std::uint32_t y) {
   return glm::normalize(vec3(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)));
 }
 
-// Returns random surfaces that face the eye. Every seventh pixel is sky.
+// Returns a plane that faces the eye with random normals and lighting. Every seventh pixel is sky.
 Inputs random_inputs() {
   maths_test::RandomInput random;
   Inputs inputs;
@@ -62,15 +62,15 @@ Inputs random_inputs() {
     append(inputs.bent, random.facing(normal), 0.0f);
     append(inputs.surface, vec3(0.25f), random.uniform(0.05f, 1.0f));
     inputs.visibility.texels.push_back(random.uniform(0.0f, 1.0f));
-    inputs.depth.texels.push_back(i % 7 == 6 ? kSky : random.uniform(1.0f, 9.0f));
+    inputs.depth.texels.push_back(i % 7 == 6 ? kNaN : 0.7f);
   }
   return inputs;
 }
 
 class GtsoPass : public PassTest {
  protected:
-  // Adds the pass with visibility and bent normals that were written before. The depth texture is
-  // linear. Returns its image.
+  // Adds the pass with visibility and bent normals that were written before, and returns its
+  // image.
   Texture add(Graph& graph, const AlcoveCamera& camera, ViewTextures textures,
               const OcclusionSettings& settings, bool normals_in_view_space = true) {
     textures[ALCOVE_IMAGE_SPECULAR] = graph.create_texture(
@@ -82,8 +82,8 @@ class GtsoPass : public PassTest {
          .normals_in_view_space = normals_in_view_space ? 1u : 0u},
         0, textures, [](GraphAdapter&, const ViewInputs& view) {
           describe_gtso(
-              view, {view.image(ALCOVE_IMAGE_VISIBILITY), view.image(ALCOVE_IMAGE_BENT_NORMAL), {}},
-              view.image(ALCOVE_IMAGE_DEPTH), view.image(ALCOVE_IMAGE_NORMALS));
+              view, view.image(ALCOVE_IMAGE_DEPTH),
+              {view.image(ALCOVE_IMAGE_VISIBILITY), view.image(ALCOVE_IMAGE_BENT_NORMAL), {}});
         });
     return textures[ALCOVE_IMAGE_SPECULAR];
   }
@@ -109,10 +109,8 @@ maths::Projection projection_of(const AlcoveCamera& view) {
 // Returns the value that the pass should write at a pixel.
 float expected(const Inputs& inputs, const maths::Projection& projection, std::uint32_t x,
                std::uint32_t y) {
-  const float depth = inputs.depth.at(x, y);
-  if (depth == kSky) return 1.0f;
-  const maths::vec2 uv = maths::pixel_centre_uv(projection, {x, y});
-  const vec3 view = maths::view_direction(projection, maths::position_vs(projection, uv, depth));
+  if (std::isnan(inputs.depth.at(x, y))) return 1.0f;
+  const vec3 view = maths_test::view_at(projection, glm::vec2(x, y) + 0.5f);
   const vec3 normal = maths::facing_normal(direction(inputs.normals, x, y), view);
   const float visibility = maths::converged_visibility(inputs.visibility.at(x, y));
   const vec3 bent = maths::raised_bent_normal(direction(inputs.bent, x, y), normal, visibility);

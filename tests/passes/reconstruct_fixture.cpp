@@ -23,7 +23,7 @@ HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
   const HostImage& depth = drawing.depth_ndc;
   const auto projection =
       maths::make_projection(to_mat4(view.clip_from_view), depth.width, depth.height);
-  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection.value());
+  const maths::vec2 from_ndc = projection.value().inverse_depth_from_ndc;
   const InterleaveOffset interleave_offset = interleave_offset_of(tile_size, index);
   HostImage stored = raw_occlusion;
   for (std::uint32_t y = 0; y < stored.height; ++y) {
@@ -39,8 +39,8 @@ HostImage packed_raw_occlusion(const AlcoveCamera& view, const Drawing& drawing,
       sums.open = texel[1];
       texel[0] =
           std::bit_cast<float>(maths::pack_raw_occlusion(sums, maths::quantise_normal(normal)));
-      texel[1] = maths::inverse_depth_of_ndc(from_ndc, ndc, is_perspective(projection.value()),
-                                             is_reversed(projection.value()));
+      texel[1] = maths::inverse_depth_of_ndc(from_ndc, ndc, projection.value().perspective,
+                                             projection.value().reversed);
     }
   }
   return stored;

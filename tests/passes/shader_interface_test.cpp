@@ -43,8 +43,9 @@ TEST(ShaderInterface, BindingNamesNumbersAndTypesReadFromSpirvAreThoseOfTheGlslF
                           "5 roughness_image " + sampled,
                           "6 result_image " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
                           "7  " + std::to_string(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)));
-  EXPECT_THAT(constants, ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel",
-                                     "2 kNormalEncoding", "3 kAreas"));
+  EXPECT_THAT(constants,
+              ElementsAre("0 kRoughnessTexture", "1 kRoughnessChannel", "2 kNormalEncoding",
+                          "3 kAreas", "4 kPerspective", "5 kReversed"));
 }
 
 // Storage images that are read need typed loads, which Direct3D 12 does not guarantee.
@@ -148,21 +149,23 @@ TEST_F(DispatchByName, SpecialisationConstantsMayBeGivenInAnyOrderTogetherWithTh
                                 {"kAreas", 0},
                                 {"kNormalEncoding", 3},
                                 {"kRoughnessTexture", 1},
+                                {"kReversed", 5},
+                                {"kPerspective", 4},
                                 {"kRoughnessChannel", 2}});
   ASSERT_TRUE(result) << result.error().message;
   std::vector<std::uint32_t> values;
   for (const AlcoveWorkConstant& constant :
        std::span(work_->dispatches[0].constants).first(work_->dispatches[0].constant_count))
     values.push_back(constant.value);
-  EXPECT_THAT(values, ElementsAre(1, 2, 3, 0));
+  EXPECT_THAT(values, ElementsAre(1, 2, 3, 0, 4, 5));
 }
 
 TEST_F(DispatchByName, ShaderBindingWithoutAnImageIsReportedByName) {
-  const auto result = add(Shader::linear_depth, {}, {"depth_ndc_image", "linear_image"});
+  const auto result = add(Shader::resolve_depth, {}, {"depth_image", "copied_image"});
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error().message,
-              HasSubstr("The shader 'linear_depth' has a binding 'linear_depth_image', for which "
-                        "its pass gives no image"));
+              HasSubstr("The shader 'resolve_depth' has a binding 'copy_image', for which its "
+                        "pass gives no image"));
 }
 
 TEST_F(DispatchByName, ListThatIsFullIsAnError) {
@@ -170,11 +173,11 @@ TEST_F(DispatchByName, ListThatIsFullIsAnError) {
   while (list.add(ALCOVE_RESOURCE_KIND_INPUT, "image", VK_FORMAT_R32_SFLOAT, {8, 8})) {
   }
   EXPECT_EQ(work_->resource_count, std::uint32_t{ALCOVE_MAX_WORK_RESOURCES});
-  const NamedImage images[] = {{"depth_ndc_image", {0}}, {"linear_depth_image", {}}};
-  list.dispatch({.shader = Shader::linear_depth, .images = images, .size = {8, 8, 1}});
+  const NamedImage images[] = {{"depth_image", {0}}, {"copy_image", {}}};
+  list.dispatch({.shader = Shader::resolve_depth, .images = images, .size = {8, 8, 1}});
   ASSERT_FALSE(list.result());
   EXPECT_THAT(list.result().error().message,
-              HasSubstr("'linear_depth_image', for which its pass gives no"));
+              HasSubstr("'copy_image', for which its pass gives no"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using passes::ViewPasses;
 namespace {
 
 // The most dispatches of a view.
-constexpr std::uint32_t kPassesOfAView = 10;
+constexpr std::uint32_t kPassesOfAView = 8;
 static_assert(ALCOVE_MAX_FRAMES_IN_FLIGHT == passes::Pipelines::kMaxFramesInFlight);
 static_assert(ALCOVE_MAX_VIEWS * kPassesOfAView + 1 <= passes::Pipelines::kMaxDispatches,
               "and one that samples pixels");

@@ -1,7 +1,8 @@
 #include "alcove/passes/graph.h"
 #include "graph/graph_adapter.h"
+#include "surface_parameters.h"
+#include "work/bindings.h"
 #include "work/shader_table.h"
-#include "work/view_parameters.h"
 
 namespace alcove::passes {
 
@@ -47,22 +48,31 @@ void drop_view(Graph& graph, std::uint32_t id) {
 tl::expected<SurfaceTextures, Error> add_surface(Graph& graph, Pipelines& pipelines,
                                                  const AlcoveCamera& camera, Texture depth) {
   GraphAdapter work(graph, pipelines, 0);
-  const VkExtent3D size = graph.extent(depth);
-  const auto projection = projection_of(camera, {size.width, size.height});
+  const VkExtent2D size{graph.extent(depth).width, graph.extent(depth).height};
+  const auto projection = projection_of(camera, size);
   if (!projection) return tl::unexpected(projection.error());
-  const AlcoveSettings settings{};
-  const AlcoveViewInfo info{.settings = &settings, .camera = camera};
-  const ViewInputs view{.list = work.list(),
-                        .info = info,
-                        .settings = settings,
-                        .size = {size.width, size.height},
-                        .projection = *projection};
-  const ResourceHandle listed = work.list().add(ALCOVE_RESOURCE_KIND_INPUT, "depth",
-                                                graph.format(depth), {size.width, size.height});
-  work.texture(listed) = depth;
-  const ResourceHandle linear_depth = describe_linear_depth(view, listed);
-  const ResourceHandle normals = describe_normals(view, linear_depth);
-  return work.list().result().and_then([&] { return work.add(); }).map([&] {
+  WorkBuilder& list = work.list();
+  const ResourceHandle input =
+      list.add(ALCOVE_RESOURCE_KIND_INPUT, "depth", graph.format(depth), size);
+  work.texture(input) = depth;
+  // Linear depth has 32 bits because a half float ends at 65504, and its steps are visible as bands
+  // at grazing angles.
+  const ResourceHandle linear_depth =
+      list.add_transient("linear depth", VK_FORMAT_R32_SFLOAT, size);
+  const ResourceHandle normals =
+      list.add_transient("normals from depth", VK_FORMAT_R16G16B16A16_SFLOAT, size);
+  const NamedImage images[] = {
+      {"depth_image", input}, {"linear_depth_image", linear_depth}, {"normal_image", normals}};
+  const NamedConstant constants[] = {{"kPerspective", flag(projection->perspective)},
+                                     {"kReversed", flag(projection->reversed)}};
+  list.dispatch({.label = "surface",
+                 .shader = Shader::surface,
+                 .constants = constants,
+                 .images = images,
+                 .parameters = bytes_of(maths::SurfaceParameters{
+                     projection->slope(), projection->inverse_depth_from_ndc}),
+                 .size = {size.width, size.height, 1}});
+  return list.result().and_then([&] { return work.add(); }).map([&] {
     return SurfaceTextures{work.texture(linear_depth), work.texture(normals)};
   });
 }

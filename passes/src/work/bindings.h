@@ -56,7 +56,8 @@ namespace alcove::passes {
   return normals_of(view.info, bool(view.image(ALCOVE_IMAGE_NORMALS)));
 }
 
-// Sets the members `area` and `written` of a shader's parameters.
+// Sets the members `area`, `written` and, of a shader that writes outputs, `to_outputs` of a
+// shader's parameters.
 template <typename Parameters>
 void set_areas(Parameters& parameters, const ViewInputs& view) {
   const AlcoveArea& written = view.written;
@@ -64,6 +65,9 @@ void set_areas(Parameters& parameters, const ViewInputs& view) {
   parameters.area = maths::uvec4(read.x, read.y, read.width, read.height);
   parameters.written = maths::uvec4(written.x, written.y, written.x + written.width - 1,
                                     written.y + written.height - 1);
+  if constexpr (requires { parameters.to_outputs; })
+    parameters.to_outputs =
+        maths::ivec2(view.info.output_x, view.info.output_y) - maths::ivec2(written.x, written.y);
 }
 
 }  // namespace alcove::passes

@@ -230,15 +230,10 @@ tl::expected<void, Error> describe_view(WorkBuilder& list, const AlcoveWorkInfo&
   if (!begun) return tl::unexpected(begun.error());
   const ViewInputs& view = *begun;
   const Depths depths = describe_depths(view);
-  ResourceHandle linear_depth, normals = view.image(ALCOVE_IMAGE_NORMALS);
-  if (view.by_table()) {
-    linear_depth = describe_linear_depth(view, depths.all);
-    if (!normals) normals = describe_normals(view, linear_depth);
-  }
   const RawOcclusionImages raw = describe_gtao(view, depths);
   return describe_reconstruct(view, depths.receivers, raw)
       .and_then([&](const OutputImages& results) {
-        if (view.by_table()) describe_gtso(view, results, linear_depth, normals);
+        if (view.by_table()) describe_gtso(view, depths.receivers, results);
         if (view.image(ALCOVE_IMAGE_MULTI_BOUNCE)) describe_multi_bounce(view, results.visibility);
         return list.result();
       });

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "maths/make_projection.h"
+#include "maths/projection.h"
 #include "work/work_builder.h"
 
 namespace alcove::passes {
@@ -68,8 +68,6 @@ struct ViewInputs {
 [[nodiscard]] bool same_camera(const AlcoveCamera& a, const AlcoveCamera& b);
 
 // The passes. Each adds its dispatches and returns its results as handles of the list.
-[[nodiscard]] ResourceHandle describe_linear_depth(const ViewInputs& view, ResourceHandle depth);
-[[nodiscard]] ResourceHandle describe_normals(const ViewInputs& view, ResourceHandle linear_depth);
 
 // The depth buffers that the passes read. Without several samples and without a mask all three are
 // the given depth.
@@ -114,9 +112,7 @@ void describe_upsample(const ViewInputs& view, ResourceHandle depth, const HalfT
                        const OutputImages& results);
 
 // Ground-truth specular occlusion by the table of Jimenez, Wu, Pesce and Jarabo 2016, section 6.
-// `normals` are in view space if the view has none of its own.
-void describe_gtso(const ViewInputs& view, const OutputImages& results, ResourceHandle linear_depth,
-                   ResourceHandle normals);
+void describe_gtso(const ViewInputs& view, ResourceHandle depth, const OutputImages& results);
 
 // Visibility per colour channel, with the light that occluders reflect ([Jimenez 2016], section 5).
 void describe_multi_bounce(const ViewInputs& view, ResourceHandle visibility);

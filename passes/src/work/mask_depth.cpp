@@ -35,7 +35,7 @@ Depths describe_mask(const ViewInputs& view, ResourceHandle depth) {
   maths::DepthCopyParameters parameters = copy_parameters(view);
   parameters.not_receiving = view.info.not_receiving;
   parameters.not_occluding = view.info.not_occluding;
-  parameters.sky = is_reversed(view.projection) ? 0.0f : 1.0f;
+  parameters.sky = view.projection.reversed ? 0.0f : 1.0f;
   const Depths depths{.all = depth,
                       .receivers = add_copy(view, "receivers"),
                       .occluders = add_copy(view, "depth of occluders")};

@@ -33,7 +33,7 @@ std::array<NamedConstant, 14> constants_of(const ViewInputs& view, Past past, bo
            {"kFilterRadius", filter_radius(settings)},
            {"kHistory", flag(has_history(view))},
            {"kMotion", flag(motion && past == Past::moving)},
-           {"kPerspective", flag(is_perspective(view.projection))},
+           {"kPerspective", flag(view.projection.perspective)},
            {"kStatic", flag(past == Past::unchanged)},
            {"kRoughnessTexture", flag(rough)},
            {"kRoughnessChannel", channel_if(rough, settings.roughness_channel)},
@@ -41,7 +41,7 @@ std::array<NamedConstant, 14> constants_of(const ViewInputs& view, Past past, bo
            {"kVisibility", flag(view.visibility())},
            {"kNormalEncoding", encoding_of(view)},
            {"kShaped", flag(!is_half(view) && shaped)},
-           {"kReversed", flag(is_reversed(view.projection))},
+           {"kReversed", flag(view.projection.reversed)},
            {"kAreas", flag(view.in_part)}}};
 }
 

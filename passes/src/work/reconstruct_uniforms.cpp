@@ -11,31 +11,6 @@
 namespace alcove::passes {
 namespace {
 
-// Returns the matrix that converts (x s, y s, depth, 1) to a position in view space. (x, y) is a
-// position on the image in pixels, depth is the linear depth, and s is depth in perspective views
-// and 1 in orthographic views.
-maths::mat4 view_from_pixel(const maths::Projection& p) {
-  const maths::vec2 per_px = maths::ray_per_px(p);
-  maths::mat4 m(0.0f);
-  m[0][0] = per_px.x;
-  m[1][1] = per_px.y;
-  m[2] = maths::vec4(p.uv_to_slope.z, p.uv_to_slope.w, -1.0f, 0.0f);
-  m[3] = maths::vec4(p.uv_to_origin.z, p.uv_to_origin.w, 0.0f, 1.0f);
-  return m;
-}
-
-// Returns the matrix from view space to (x w, y w, depth, w), where (x, y) is a position in pixels.
-maths::mat4 pixel_from_view(const maths::Projection& p) {
-  maths::mat4 m(0.0f);
-  m[0][0] = p.position_to_uv.x * p.size_px.x;
-  m[1][1] = p.position_to_uv.y * p.size_px.y;
-  m[2] = -maths::vec4(p.depth_to_uv.x * p.size_px.x, p.depth_to_uv.y * p.size_px.y, 1.0f,
-                      p.depth_to_uv.z);
-  m[3] = maths::vec4(p.position_to_uv.z * p.size_px.x, p.position_to_uv.w * p.size_px.y, 0.0f,
-                     p.depth_to_uv.w);
-  return m;
-}
-
 // The largest range of depths that the history of a perspective view distinguishes, in octaves
 // (factors of two) from the near plane on. 13 bits then resolve a relative change of depth of
 // 2^-9.5. The resolution is finer if the far plane is nearer than that. All surfaces farther away
@@ -54,7 +29,7 @@ maths::vec2 history_depth_scale(const maths::Projection& p) {
   constexpr float kLeast = 1e-30f;
   const float near = p.near_far.x;
   const float far = p.near_far.y;
-  if (is_perspective(p)) {
+  if (p.perspective) {
     const float unit = history_unit(p);
     const float log_near = std::log2(std::max(near, kLeast) / unit);
     const float octaves =
@@ -77,8 +52,8 @@ constexpr float kHistorySlack = 0.75f / 8191.0f;
 float relative_history_distance(float texel) { return std::clamp(1.5f * texel, 0.0013f, 0.003f); }
 
 float history_sharpness(const maths::Projection& p, maths::vec2 scale) {
-  const float pixel = std::abs(maths::ray_per_px(p).y);
-  if (is_perspective(p)) {
+  const float pixel = std::abs(p.ray_per_px().y);
+  if (p.perspective) {
     // A relative change of depth by e changes the stored depth by e * scale / ln 2.
     constexpr float kLn2 = 0.69314718f;
     return kLn2 / (relative_history_distance(pixel) * scale.x);
@@ -94,15 +69,15 @@ constexpr float kHalfHistorySlack = 0.03f;
 // unscaled: the reciprocal of the change of depth at which a history texel's weight reaches 0. The
 // change is relative in perspective views and in scene units in orthographic views.
 float half_history_sharpness(const maths::Projection& p) {
-  const float texel = 2.0f * std::abs(maths::ray_per_px(p).y);
+  const float texel = 2.0f * std::abs(p.ray_per_px().y);
   const float rounding = 0x1p-14f * std::abs(p.near_far.y);
   return 1.0f /
-         (is_perspective(p) ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
+         (p.perspective ? relative_history_distance(texel) : std::max(1.5f * texel, rounding));
 }
 
 // Returns the value of ReconstructParameters::plane_from_normal.
 maths::mat4 plane_from_normal(const maths::Projection& p, const maths::mat4& view_from_normal) {
-  const maths::mat3 plane_from_view = maths::transpose(maths::mat3(view_from_pixel(p)));
+  const maths::mat3 plane_from_view = maths::transpose(maths::mat3(p.view_from_pixel));
   return maths::mat4(maths::transpose(plane_from_view * maths::mat3(view_from_normal)));
 }
 
@@ -167,48 +142,45 @@ maths::ReconstructParameters reconstruct_parameters(const ViewInputs& view,
   const AlcoveSettings& settings = view.settings;
   const maths::Projection& projection = view.projection;
   const maths::Projection& previous = from.projection;
-  const maths::mat4 from_pixel = view_from_pixel(projection);
   // This matrix is computed in double, because the translations nearly cancel if the camera is far
   // from the origin.
   const maths::dmat4 to_previous =
       to_rigid(from.camera.view_from_world) * maths::inverse(to_rigid(info.camera.view_from_world));
   const maths::mat4 to_view = view_from_normal(info.camera, normals_of(view));
   maths::ReconstructParameters parameters{};
-  const maths::mat4 previous_from_pixel = maths::transpose(maths::mat4(
-      maths::dmat4(pixel_from_view(previous)) * to_previous * maths::dmat4(from_pixel)));
+  const maths::mat4 previous_from_pixel =
+      maths::transpose(maths::mat4(maths::dmat4(previous.pixel_from_view) * to_previous *
+                                   maths::dmat4(projection.view_from_pixel)));
   const float texel = settings.half_resolution != 0 ? 2.0f : 1.0f;
   // From pixels to texels, from the centre of the first one.
   const maths::vec4 x = previous_from_pixel[0] / texel - 0.5f * previous_from_pixel[3];
   const maths::vec4 y = previous_from_pixel[1] / texel - 0.5f * previous_from_pixel[3];
   parameters.previous_from_pixel =
       maths::transpose(maths::mat4(x, y, previous_from_pixel[3], previous_from_pixel[2]));
-  if (!is_perspective(projection))
+  if (!projection.perspective)
     std::swap(parameters.previous_from_pixel[2], parameters.previous_from_pixel[3]);
   parameters.normal_from_view = maths::transpose(to_view);
   parameters.plane_from_normal = plane_from_normal(projection, to_view);
   parameters.previous_from_view = maths::mat4(maths::mat3(maths::mat4(to_previous)));
-  parameters.slope = maths::vec4(maths::ray_per_px(projection), projection.uv_to_slope.z,
-                                 projection.uv_to_slope.w);
+  parameters.slope = projection.slope();
   // More slices reduce the distance from the tangent plane that is tolerated.
   parameters.tolerance = std::sqrt(static_cast<float>(settings.slices)) /
-                         (kFilterTolerancePx * std::abs(maths::ray_per_px(projection).y));
+                         (kFilterTolerancePx * std::abs(projection.ray_per_px().y));
   parameters.largest_weight = static_cast<float>(settings.history_frames) - 1.0f;
   // The distances between the borders of the area that is read and those of the area that is
   // written were the same in the previous frame.
   set_areas(parameters, view);
   const maths::vec2 beyond =
       projection.size_px - 1.0f - maths::vec2(parameters.written.z, parameters.written.w);
-  parameters.to_outputs = maths::ivec2(info.output_x, info.output_y) -
-                          maths::ivec2(parameters.written.x, parameters.written.y);
   parameters.previous_extent = maths::vec4(maths::ceil((previous.size_px - beyond) / texel) - 1.0f,
                                            previous.size_px / projection.size_px / texel);
   parameters.pixel_uv = 1.0f / projection.size_px;
-  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
-  parameters.pixels_per_slope = 1.0f / maths::ray_per_px(projection);
+  parameters.inverse_depth_from_ndc = projection.inverse_depth_from_ndc;
+  parameters.pixels_per_slope = 1.0f / projection.ray_per_px();
   parameters.history_depth_scale =
       maths::vec4(history_depth_scale(projection), history_depth_scale(previous));
   parameters.history_unit = history_unit(projection);
-  if (is_perspective(previous)) {
+  if (previous.perspective) {
     // The difference of the units' logarithms is exact, because the units are powers of two.
     parameters.history_depth_scale.w +=
         parameters.history_depth_scale.z * static_cast<float>(std::ilogb(history_unit(previous)) -
@@ -222,7 +194,7 @@ maths::ReconstructParameters reconstruct_parameters(const ViewInputs& view,
     parameters.history_slack = kHistorySlack * parameters.history_sharpness;
   }
   parameters.history_slope = parameters.history_depth_scale.z * parameters.history_sharpness *
-                             (is_perspective(projection) ? 1.442695f : 1.0f);
+                             (projection.perspective ? 1.442695f : 1.0f);
   // The dither offsets of the frames are multiples of the golden ratio modulo 1, which are spread
   // evenly over any number of successive frames.
   parameters.dither_offset = static_cast<float>(view.index * 2654435769u) * 0x1p-32f;
@@ -244,8 +216,7 @@ maths::ReconstructParameters reconstruct_parameters(const ViewInputs& view,
                    static_cast<float>(settings.tile_size));
   const float scale = parameters.inverse_depth_from_ndc.x;
   const float per_ndc = std::abs(scale);
-  const bool from_zero =
-      maths::is_counted_from_zero(is_perspective(projection), is_reversed(projection));
+  const bool from_zero = maths::is_counted_from_zero(projection.perspective, projection.reversed);
   parameters.half_inverse_depth_per_ndc = from_zero ? 0.5f * scale : -0.5f * scale;
   parameters.depth_step =
       std::max(depth_step(projection, view.depth_format).constant, 0.0f) / per_ndc;

@@ -12,8 +12,7 @@ namespace {
 
 // In the order of the enum.
 constexpr ShaderSource kSources[] = {
-    {"linear_depth", kLinearDepth, kLinearDepthInterface},
-    {"normals", kNormals, kNormalsInterface},
+    {"surface", kSurface, kSurfaceInterface},
     {"gtao", kGtao, kGtaoInterface},
     {"gtao_bent", kGtaoBent, kGtaoBentInterface},
     {"gtao_specular", kGtaoSpecular, kGtaoSpecularInterface},

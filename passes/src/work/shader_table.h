@@ -18,8 +18,7 @@ namespace alcove::passes {
 // The compute shaders of the library. Each is a file in shaders/, or a variant of a file that is
 // compiled with other preprocessor definitions.
 enum class Shader : std::uint8_t {
-  linear_depth,
-  normals,
+  surface,
   gtao,
   gtao_bent,
   gtao_specular,

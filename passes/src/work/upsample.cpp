@@ -17,29 +17,27 @@ constexpr float kTolerancePx = 1.0f;
 
 std::array<NamedConstant, 6> constants_of(const ViewInputs& view) {
   const AlcoveSettings& settings = view.settings;
-  return {{{"kPerspective", flag(is_perspective(view.projection))},
+  return {{{"kPerspective", flag(view.projection.perspective)},
            {"kVisibility", flag(view.visibility())},
            {"kShaped", flag(settings.power != 1.0f || settings.intensity != 1.0f)},
            {"kNormalEncoding", view.bent_normal() ? encoding_of(view) : 0u},
-           {"kReversed", flag(is_reversed(view.projection))},
+           {"kReversed", flag(view.projection.reversed)},
            {"kAreas", flag(view.in_part)}}};
 }
 
 maths::UpsampleParameters parameters_of(const ViewInputs& view, VkExtent2D stored) {
   const maths::Projection& projection = view.projection;
-  const maths::vec2 per_px = maths::ray_per_px(projection);
+  const maths::vec2 per_px = projection.ray_per_px();
   maths::UpsampleParameters parameters{};
   set_areas(parameters, view);
-  parameters.to_outputs = maths::ivec2(view.info.output_x, view.info.output_y) -
-                          maths::ivec2(parameters.written.x, parameters.written.y);
   parameters.normal_from_view =
       maths::transpose(view_from_normal(view.info.camera, normals_of(view)));
-  parameters.slope = maths::vec4(per_px, projection.uv_to_slope.z, projection.uv_to_slope.w);
-  parameters.inverse_depth_from_ndc = inverse_depth_from_ndc(projection);
+  parameters.slope = projection.slope();
+  parameters.inverse_depth_from_ndc = projection.inverse_depth_from_ndc;
   parameters.pixel_uv = 1.0f / projection.size_px;
   parameters.texel_uv = 1.0f / maths::vec2(stored.width, stored.height);
   parameters.half_pixel_per_tilt =
-      (is_perspective(projection) ? -0.5f : 0.5f) * maths::kLargestTilt * per_px;
+      (projection.perspective ? -0.5f : 0.5f) * maths::kLargestTilt * per_px;
   parameters.tolerance = 1.0f / (kTolerancePx * std::abs(per_px.y));
   parameters.power = view.settings.power;
   parameters.intensity = view.settings.intensity;

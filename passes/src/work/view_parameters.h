@@ -10,7 +10,7 @@
 
 #include "alcove/alcove_work.h"
 #include "alcove/passes/error.h"
-#include "maths/make_projection.h"
+#include "maths/projection.h"
 #include "maths/slice_line.h"
 #include "work/rigid_transform.h"
 
@@ -78,37 +78,10 @@ struct MotionConvention {
   return motion;
 }
 
-[[nodiscard]] inline bool is_perspective(const maths::Projection& projection) {
-  return projection.eye.w > 0.0f;
-}
-
-[[nodiscard]] inline bool is_reversed(const maths::Projection& projection) {
-  return projection.sky.x < 0.0f;
-}
-
-// The scale and offset of maths::inverse_depth_of_ndc().
-[[nodiscard]] inline maths::vec2 inverse_depth_from_ndc(const maths::Projection& projection) {
-  const maths::dvec4 unproject(projection.depth_unproject);
-  const bool perspective = is_perspective(projection);
-  const maths::dvec2 linear = perspective ? maths::dvec2(unproject.z, unproject.w) / unproject.y
-                                          : maths::dvec2(unproject.x, unproject.y) / unproject.w;
-  if (!perspective) return {static_cast<float>(linear.x), static_cast<float>(linear.y)};
-  const double far = is_reversed(projection) ? linear.y : linear.x + linear.y;
-  // If the matrix has rounding errors, its inverse depth at the far plane can be slightly negative.
-  return {static_cast<float>(std::abs(linear.x)), static_cast<float>(std::max(far, 0.0))};
-}
-
-// Returns whether the far plane of a perspective projection is infinitely far away, so that its
-// inverse depth is 0.
-[[nodiscard]] inline bool has_infinite_far(const maths::Projection& projection) {
-  return is_perspective(projection) && inverse_depth_from_ndc(projection).y == 0.0f;
-}
-
 // Returns the resolution of a depth buffer of this format.
 [[nodiscard]] inline maths::DepthStep depth_step(const maths::Projection& projection,
                                                  VkFormat format) {
-  const maths::vec2 from_ndc = inverse_depth_from_ndc(projection);
-  const double scale = std::abs(from_ndc.x);
+  const double scale = std::abs(projection.inverse_depth_from_ndc.x);
   // The result is 1.5 times the step of the format, because rasterisers do not always round to the
   // nearest value.
   const auto fixed = [&](double levels) {
@@ -127,11 +100,10 @@ struct MotionConvention {
       // The stored depth grows with the inverse depth in perspective if it is reversed, and in
       // orthographic views if it is not.
       const double step = std::ldexp(1.0, -23);
-      const bool perspective = is_perspective(projection);
-      const bool reversed = is_reversed(projection);
       // The inverse depth at which the stored depth is 0.
-      const double zero = from_ndc.y + (perspective && !reversed ? scale : 0.0);
-      const double sign = perspective == reversed ? 1.0 : -1.0;
+      const double zero = projection.inverse_depth_from_ndc.y +
+                          (projection.perspective && !projection.reversed ? scale : 0.0);
+      const double sign = projection.perspective == projection.reversed ? 1.0 : -1.0;
       return maths::DepthStep{static_cast<float>(-sign * step * zero),
                               static_cast<float>(sign * step)};
     }

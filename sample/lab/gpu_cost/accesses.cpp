@@ -189,16 +189,18 @@ Accesses upsample_accesses(const PassWork& work) {
   return accesses;
 }
 
-// normals.comp: depth of the pixel and of two neighbours on each side along both axes.
-Accesses normals_accesses(const PassWork& work) {
+// gtso.comp: without a texture of normals also depth of two neighbours on each side along both
+// axes.
+Accesses gtso_accesses(const PassWork& work) {
+  const bool given =
+      std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
   Accesses accesses;
   for (const PassImage& image : work.images) {
     accesses.push_back(at_invocation(image));
-    if (image.direction == Direction::read) {
-      for (const std::int32_t distance : {-1, 1, -2, 2}) {
-        accesses.push_back(at_invocation(image, 1, {distance, 0}));
-        accesses.push_back(at_invocation(image, 1, {0, distance}));
-      }
+    if (given || image.name != "depth") continue;
+    for (const std::int32_t distance : {-1, 1, -2, 2}) {
+      accesses.push_back(at_invocation(image, 1, {distance, 0}));
+      accesses.push_back(at_invocation(image, 1, {0, distance}));
     }
   }
   return accesses;
@@ -249,11 +251,11 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
 DispatchAccesses accesses_of(const PassWork& work) {
   DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
   if (work.pass == "gtao") dispatch.strip_columns = work.groups.y;
-  dispatch.accesses = work.pass == "gtao"          ? gtao_accesses(work)
-                      : work.pass == "reconstruct" ? reconstruct_accesses(work)
-                      : work.pass == "upsample"    ? upsample_accesses(work)
-                      : work.pass == "normals"     ? normals_accesses(work)
-                                                   : copy_accesses(work);
+  dispatch.accesses = work.pass == "gtao"                 ? gtao_accesses(work)
+                      : work.pass == "reconstruct"        ? reconstruct_accesses(work)
+                      : work.pass == "upsample"           ? upsample_accesses(work)
+                      : work.pass == "specular occlusion" ? gtso_accesses(work)
+                                                          : copy_accesses(work);
   return dispatch;
 }
 

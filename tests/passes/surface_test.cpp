@@ -1,30 +1,118 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "drawing.h"
+#include "maths/constants.h"
 #include "pass_fixture.h"
+#include "views.h"
 
 namespace alcove::passes {
 namespace {
 
 using framegraph::Graph;
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
-class NormalsFromDepth : public PassTest {
+class SurfacePass : public PassTest {
  protected:
-  HostImage normals(const AlcoveCamera& view, const HostImage& depth_ndc) {
+  // Runs add_surface() on a depth buffer that the view's projection wrote. `which` is the texture
+  // that is read back.
+  const HostImage& surface(const AlcoveCamera& view, const HostImage& depth_ndc,
+                           framegraph::Texture SurfaceTextures::*which) {
     run([&](Graph& graph) {
-      const auto surface = add_surface(graph, gpu().pipelines(), view, upload(graph, depth_ndc));
-      ASSERT_TRUE(surface) << surface.error().message;
-      read_back(graph, surface->normals);
+      const auto textures = add_surface(graph, gpu().pipelines(), view, upload(graph, depth_ndc));
+      ASSERT_TRUE(textures) << textures.error().message;
+      read_back(graph, (*textures).*which);
     });
     return result();
   }
+  HostImage linear_image(const AlcoveCamera& view, const HostImage& depth_ndc) {
+    return surface(view, depth_ndc, &SurfaceTextures::linear_depth);
+  }
+  HostImage normals(const AlcoveCamera& view, const HostImage& depth_ndc) {
+    return surface(view, depth_ndc, &SurfaceTextures::normals);
+  }
 };
+
+glm::dmat4 clip_from_view(const TestView& view) {
+  glm::mat4 single;
+  std::memcpy(&single[0][0], view.view.clip_from_view, sizeof(single));
+  return glm::dmat4(single);
+}
+
+// Returns the linear depth by inverting the projection matrix, which is not the shader's formula.
+double linear_depth(const glm::dmat4& projection, float depth_ndc) {
+  const glm::dvec4 point = glm::inverse(projection) * glm::dvec4(0.0, 0.0, depth_ndc, 1.0);
+  return -point.z / point.w;
+}
+
+bool is_reversed(const glm::dmat4& m) { return m[2][2] * m[3][3] > m[3][2] * m[2][3]; }
+
+TEST_F(SurfacePass, LinearDepthEqualsTheInverseProjectionOfRawDepthForEveryKindOfProjection) {
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const glm::dmat4 projection = clip_from_view(view);
+    const bool reversed = is_reversed(projection);
+    // Raw depths from the near plane nearly to the far plane, in smaller steps towards the far
+    // plane.
+    HostImage depth{33, 5, {}, 1};
+    for (int i = 0; i < 33 * 5; ++i) {
+      const float away = std::pow(0.94f, static_cast<float>(i));
+      depth.texels.push_back(reversed ? away : 1.0f - away);
+    }
+    const HostImage linear = linear_image(view.view, depth);
+    for (std::size_t i = 0; i < depth.texels.size(); ++i) {
+      const double expected = linear_depth(projection, depth.texels[i]);
+      // A raw depth near 1 determines the distance with few digits. An error of half its last digit
+      // is allowed.
+      const double digit = 6e-8 * std::max(std::abs(depth.texels[i]), 1e-30f);
+      const double slack =
+          std::abs(linear_depth(projection, depth.texels[i] - static_cast<float>(digit)) -
+                   expected) +
+          2e-6 * std::abs(expected);
+      ASSERT_NEAR(linear.texels[i], expected, slack) << "of raw depth " << depth.texels[i];
+    }
+  }
+}
+
+TEST_F(SurfacePass, RawDepthsOutOfRangeBecomeTheSkyOrTheNearPlaneAndNaNBecomesTheSky) {
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const glm::dmat4 projection = clip_from_view(view);
+    const bool reversed = is_reversed(projection);
+    const float far = reversed ? 0.0f : 1.0f;
+    const float beyond_far = reversed ? -kInfinity : kInfinity;
+    const float before_near = reversed ? 7.0f : -7.0f;
+    const HostImage depth{
+        6, 1, {far, kNaN, beyond_far, reversed ? -0.5f : 1.5f, before_near, -beyond_far}, 1};
+    const HostImage linear = linear_image(view.view, depth);
+    const double near = linear_depth(projection, 1.0f - far);
+    EXPECT_THAT(std::vector(linear.texels.begin(), linear.texels.begin() + 4),
+                testing::Each(maths::kSkyDepth));
+    EXPECT_NEAR(linear.texels[4], near, 1e-5 * near);
+    EXPECT_NEAR(linear.texels[5], near, 1e-5 * near);
+  }
+}
+
+TEST_F(SurfacePass, EveryPixelIsWrittenAtAnyImageSize) {
+  const TestView view = test_views()[2];
+  const double expected = linear_depth(clip_from_view(view), 0.5f);
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, {3u, 5u}, {17u, 9u}, {33u, 1u}, {1u, 40u}}) {
+    SCOPED_TRACE(testing::Message() << width << " x " << height);
+    poison_memory(width, height);
+    const HostImage depth{width, height, std::vector<float>(std::size_t{width} * height, 0.5f), 1};
+    EXPECT_THAT(linear_image(view.view, depth).texels,
+                testing::Each(testing::FloatNear(static_cast<float>(expected), 1e-4f)));
+  }
+}
+
+double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 glm::dvec3 vector_at(const HostImage& image, std::uint32_t x, std::uint32_t y) {
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
@@ -59,7 +147,7 @@ double largest_error(const HostImage& normals, const Drawing& drawing) {
   return largest;
 }
 
-TEST_F(NormalsFromDepth, PlanesGetTheirExactNormalAtAnyTiltUpToTheImageBorder) {
+TEST_F(SurfacePass, PlanesGetTheirExactNormalAtAnyTiltUpToTheImageBorder) {
   for (const TestView& view : test_views()) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       SCOPED_TRACE(testing::Message() << view.name << " tilted " << tilt << " degrees");
@@ -70,7 +158,7 @@ TEST_F(NormalsFromDepth, PlanesGetTheirExactNormalAtAnyTiltUpToTheImageBorder) {
   }
 }
 
-TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossADepthStep) {
+TEST_F(SurfacePass, NormalsAreNotBlurredAcrossADepthStep) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     // The front of a box in front of a wall. Both face the eye, and their depths differ by at least
@@ -82,7 +170,7 @@ TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossADepthStep) {
   }
 }
 
-TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossACrease) {
+TEST_F(SurfacePass, NormalsAreNotBlurredAcrossACrease) {
   const TestView view = test_views()[5];
   Shape left = plane({0.0, 0.0, -5.0}, {1.0, 0.0, 1.0});
   left.keep = [](const glm::dvec3& p) { return p.x < 0.0; };
@@ -92,7 +180,7 @@ TEST_F(NormalsFromDepth, NormalsAreNotBlurredAcrossACrease) {
   EXPECT_LT(largest_error(normals(view.view, drawing.depth_ndc), drawing), 0.5);
 }
 
-TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbouringNormals) {
+TEST_F(SurfacePass, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbouringNormals) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Shape post = plane({0.0, 0.0, -4.0}, {0.3, 0.0, 1.0});
@@ -109,7 +197,7 @@ TEST_F(NormalsFromDepth, NormalOfTheSkyFacesTheEyeAndSkyDoesNotAffectNeighbourin
   }
 }
 
-TEST_F(NormalsFromDepth, SurfaceTwoPixelsWideGetsItsOwnNormal) {
+TEST_F(SurfacePass, SurfaceTwoPixelsWideGetsItsOwnNormal) {
   for (const TestView& view : test_views()) {
     for (const double n_dot_v : {-0.5, 0.5}) {
       SCOPED_TRACE(testing::Message() << view.name << ", n.v " << n_dot_v);
@@ -127,7 +215,7 @@ TEST_F(NormalsFromDepth, SurfaceTwoPixelsWideGetsItsOwnNormal) {
   }
 }
 
-TEST_F(NormalsFromDepth, PixelWithNaNDepthAffectsNoOtherNormal) {
+TEST_F(SurfacePass, PixelWithNaNDepthAffectsNoOtherNormal) {
   for (const TestView& view : test_views()) {
     SCOPED_TRACE(view.name);
     Drawing drawing = draw(view, 40, 30, {tilted_plane(50.0, 4.0)});
@@ -139,7 +227,7 @@ TEST_F(NormalsFromDepth, PixelWithNaNDepthAffectsNoOtherNormal) {
   }
 }
 
-TEST_F(NormalsFromDepth, ImagesOfOneRowOrColumnGetNormalsOfUnitLength) {
+TEST_F(SurfacePass, ImagesOfOneRowOrColumnGetNormalsOfUnitLength) {
   const TestView view = test_views()[2];
   for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}}) {
     SCOPED_TRACE(testing::Message() << width << " x " << height);
