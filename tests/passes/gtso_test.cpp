@@ -88,7 +88,8 @@ class GtsoPass : public PassTest {
     return textures[ALCOVE_IMAGE_SPECULAR];
   }
   ViewTextures textures_of(Graph& graph, const Inputs& inputs) {
-    ViewTextures textures{upload(graph, inputs.depth), upload(graph, inputs.normals)};
+    ViewTextures textures{upload(graph, inputs.depth)};
+    if (inputs.normals.width != 0) textures[ALCOVE_IMAGE_NORMALS] = upload(graph, inputs.normals);
     textures[ALCOVE_IMAGE_VISIBILITY] = upload(graph, inputs.visibility);
     textures[ALCOVE_IMAGE_BENT_NORMAL] = upload(graph, inputs.bent);
     return textures;
@@ -164,6 +165,24 @@ TEST_F(GtsoPass, WorldSpaceNormalsAreRotatedIntoViewSpace) {
   view.view_from_world[0] = view.view_from_world[5] = -1.0f;
   EXPECT_NE(in_view_space.texels, with(view, false).texels);
   EXPECT_EQ(in_view_space.texels, with(view, true).texels);
+}
+
+TEST_F(GtsoPass, NormalsAreMadeFromDepthWithoutATextureAndAtTexelsWithoutANormal) {
+  for (const TestView& view : test_views()) {
+    SCOPED_TRACE(view.name);
+    const Drawing drawing = draw(view, kWidth, kHeight, {tilted_plane(40.0, 4.0)});
+    Inputs inputs = random_inputs();
+    inputs.depth = drawing.depth_ndc;
+    inputs.normals = drawing.normal_vs;
+    run_pass(view.view, inputs);
+    const HostImage given = result();
+    std::ranges::fill(inputs.normals.texels, 0.0f);
+    run_pass(view.view, inputs);
+    EXPECT_THAT(result().texels, testing::Pointwise(testing::FloatNear(0.02f), given.texels));
+    inputs.normals = {};
+    run_pass(view.view, inputs);
+    EXPECT_THAT(result().texels, testing::Pointwise(testing::FloatNear(0.02f), given.texels));
+  }
 }
 
 TEST_F(GtsoPass, LookupTableIsCreatedWhenAPassReadsIt) {
