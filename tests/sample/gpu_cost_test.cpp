@@ -158,7 +158,8 @@ TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
 TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   const OcclusionSettings settings;
   const CompiledLoop loop{.depth = 1, .instructions = 7};
-  const auto iterations = loop_iterations({"multi-bounce", settings, FrameState::moving}, {&loop, 1});
+  const auto iterations =
+      loop_iterations({"multi-bounce", settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
   EXPECT_THAT(iterations.error(), HasSubstr("'multi-bounce' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
