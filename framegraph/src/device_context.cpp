@@ -215,7 +215,6 @@ tl::expected<void, Errors> open(DeviceContext& context, const DeviceHandles& han
   if (context.properties.apiVersion < VK_API_VERSION_1_2)
     return tl::unexpected(missing(std::string("the device '") + context.properties.deviceName +
                                   "' is below Vulkan 1.2: choose another or update its driver"));
-  context.vk.vkGetPhysicalDeviceMemoryProperties(handles.physical_device, &context.memory);
   read_limits(context);
   read_timestamp_bits(context);
   context.is_validated = has_validation_layers(handles);

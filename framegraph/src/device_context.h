@@ -14,7 +14,6 @@ struct DeviceContext {
   DeviceHandles handles;
   VulkanFunctions vk;
   VkPhysicalDeviceProperties properties{};
-  VkPhysicalDeviceMemoryProperties memory{};
   // The number of valid bits of a timestamp for each queue class, or 0 if the queue has no
   // timestamps.
   std::uint32_t timestamp_bits[kQueueClasses] = {};

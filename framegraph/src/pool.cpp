@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <cstring>
 
 #include "aspects.h"
@@ -46,9 +47,9 @@ Pool::~Pool() {
   for (auto& [handle, physical] : imports_) destroy(*physical);
   for (auto& retired : retired_) {
     if (retired.physical) destroy(*retired.physical);
-    framegraph::free(device_, retired.heap);
+    free(retired.heap);
   }
-  for (const HeapMemory& heap : heaps_) framegraph::free(device_, heap.memory);
+  for (const HeapMemory& heap : heaps_) free(heap.memory);
 }
 
 VkResult Pool::reserve(const Plan& plan, std::uint64_t frame) {
@@ -219,7 +220,7 @@ void Pool::collect(std::uint64_t finished, std::uint64_t frame) {
   std::erase_if(retired_, [&](RetiredObject& retired) {
     if (retired.frame > finished) return false;
     if (retired.physical) destroy(*retired.physical);
-    framegraph::free(device_, retired.heap);
+    free(retired.heap);
     return true;
   });
   const auto destroy_unused = [&](Objects& objects) {
@@ -287,9 +288,17 @@ VkResult Pool::create_bound(Physical& physical, std::string_view name) {
 
 VkResult Pool::allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                         MemoryLifetime lifetime, MemoryRange& memory) {
-  return framegraph::allocate(
-      device_, {requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses, lifetime},
-      memory);
+  const VkResult result = allocate_memory(
+      device_.vk, device_.handles,
+      {requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, has_addresses, lifetime}, memory);
+  const Log& log = device_.handles.host.log;
+  if (result == VK_SUCCESS && log.write != nullptr) {
+    char text[96];
+    std::snprintf(text, sizeof text, "The render graph has allocated %.2f MiB of device memory.",
+                  static_cast<double>(requirements.size) / (1 << 20));
+    log.write(log.user, Severity::info, text);
+  }
+  return result;
 }
 
 void Pool::destroy(Physical& physical) {
@@ -299,7 +308,7 @@ void Pool::destroy(Physical& physical) {
   if (!physical.owned) return;
   device_.vk.vkDestroyImage(device, physical.image, device_.callbacks());
   device_.vk.vkDestroyBuffer(device, physical.buffer, device_.callbacks());
-  framegraph::free(device_, physical.own_memory);
+  free(physical.own_memory);
 }
 
 void Pool::set_name(const Physical& physical, std::string_view name) {

@@ -12,8 +12,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "alcove/framegraph/device_memory.h"
 #include "alcove/framegraph/record_context.h"
-#include "device_allocator.h"
+#include "device_context.h"
 
 namespace alcove::framegraph {
 
@@ -117,6 +118,7 @@ class Pool {
   VkResult create_bound(Physical& physical, std::string_view name);
   VkResult allocate(const VkMemoryRequirements& requirements, bool has_addresses,
                     MemoryLifetime lifetime, MemoryRange& memory);
+  void free(const MemoryRange& memory) { free_memory(device_.vk, device_.handles, memory); }
   void retire_objects(Objects& objects, std::uint64_t frame);
   // Moves all heaps and transients to the list of objects to be destroyed.
   void retire_transients(std::uint64_t frame);

@@ -326,6 +326,7 @@ VkResult VulkanDevice::allocate(const VkMemoryRequirements& needs, VkMemoryPrope
   const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                   .allocationSize = needs.size,
                                   .memoryTypeIndex = memory_type(needs.memoryTypeBits, flags)};
+  if (info.memoryTypeIndex == UINT32_MAX) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   return vkAllocateMemory(device_, &info, nullptr, &memory);
 }
 

@@ -1,23 +1,8 @@
 #include "vulkan/host_buffer.h"
 
+#include "alcove/framegraph/device_memory.h"
+
 namespace alcove::passes {
-namespace {
-
-constexpr VkMemoryPropertyFlags kProperties =
-    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-
-// Returns the first memory type in the mask `bits` that is host-visible and host-coherent. Vulkan
-// guarantees that such a type exists for every buffer.
-std::uint32_t coherent_type(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t bits) {
-  std::uint32_t type = 0;
-  while (type < memory.memoryTypeCount &&
-         ((bits >> type & 1u) == 0 ||
-          (memory.memoryTypes[type].propertyFlags & kProperties) != kProperties))
-    ++type;
-  return type;
-}
-
-}  // namespace
 
 tl::expected<std::unique_ptr<HostBuffer>, VkResult> HostBuffer::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
@@ -35,45 +20,17 @@ tl::expected<std::unique_ptr<HostBuffer>, VkResult> HostBuffer::create(
 VkResult HostBuffer::allocate() {
   VkMemoryRequirements needs;
   vk_.vkGetBufferMemoryRequirements(device_.device, buffer_, &needs);
-  VkResult result = device_.host.memory.allocate != nullptr ? allocate_from_caller(needs)
-                                                            : allocate_from_vulkan(needs);
-  if (result == VK_SUCCESS)
-    result = vk_.vkBindBufferMemory(device_.device, buffer_, memory_.memory, memory_.offset);
-  bytes_ = static_cast<std::byte*>(memory_.mapped);
-  return result;
-}
-
-VkResult HostBuffer::allocate_from_caller(const VkMemoryRequirements& needs) {
-  const framegraph::MemoryFunctions& memory = device_.host.memory;
-  const VkResult result = memory.allocate(memory.user, {needs, kProperties}, memory_);
-  if (result != VK_SUCCESS) {
-    memory_ = {};
-    return result;
-  }
-  return memory_.mapped == nullptr ? VK_ERROR_MEMORY_MAP_FAILED : VK_SUCCESS;
-}
-
-VkResult HostBuffer::allocate_from_vulkan(const VkMemoryRequirements& needs) {
-  VkPhysicalDeviceMemoryProperties memory;
-  vk_.vkGetPhysicalDeviceMemoryProperties(device_.physical_device, &memory);
-  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                  .allocationSize = needs.size,
-                                  .memoryTypeIndex = coherent_type(memory, needs.memoryTypeBits)};
-  const VkResult result = vk_.vkAllocateMemory(device_.device, &info,
-                                               device_.host.allocation_callbacks, &memory_.memory);
-  return result == VK_SUCCESS
-             ? vk_.vkMapMemory(device_.device, memory_.memory, 0, VK_WHOLE_SIZE, 0, &memory_.mapped)
-             : result;
+  // Vulkan guarantees that every buffer can lie in memory with these properties.
+  constexpr VkMemoryPropertyFlags kProperties =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const VkResult result = framegraph::allocate_memory(vk_, device_, {needs, kProperties}, memory_);
+  if (result != VK_SUCCESS) return result;
+  return vk_.vkBindBufferMemory(device_.device, buffer_, memory_.memory, memory_.offset);
 }
 
 HostBuffer::~HostBuffer() {
-  const framegraph::HostServices& host = device_.host;
-  vk_.vkDestroyBuffer(device_.device, buffer_, host.allocation_callbacks);
-  if (memory_.memory == VK_NULL_HANDLE) return;
-  if (host.memory.free != nullptr)
-    host.memory.free(host.memory.user, memory_);
-  else
-    vk_.vkFreeMemory(device_.device, memory_.memory, host.allocation_callbacks);
+  vk_.vkDestroyBuffer(device_.device, buffer_, device_.host.allocation_callbacks);
+  framegraph::free_memory(vk_, device_, memory_);
 }
 
 }  // namespace alcove::passes

@@ -23,20 +23,17 @@ class HostBuffer {
   HostBuffer& operator=(const HostBuffer&) = delete;
 
   VkBuffer buffer() const { return buffer_; }
-  std::byte* bytes() const { return bytes_; }
+  std::byte* bytes() const { return static_cast<std::byte*>(memory_.mapped); }
 
  private:
   HostBuffer(const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device)
       : vk_(vk), device_(device) {}
   VkResult allocate();
-  VkResult allocate_from_caller(const VkMemoryRequirements& needs);
-  VkResult allocate_from_vulkan(const VkMemoryRequirements& needs);
 
   const framegraph::VulkanFunctions& vk_;
   const framegraph::DeviceHandles& device_;
   VkBuffer buffer_ = VK_NULL_HANDLE;
   framegraph::MemoryRange memory_;
-  std::byte* bytes_ = nullptr;
 };
 
 }  // namespace alcove::passes
