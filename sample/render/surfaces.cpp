@@ -59,13 +59,12 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
     textures[ALCOVE_IMAGE_MULTI_BOUNCE] =
         graph.create_texture("multi-bounce", {format, extent_of(graph, gbuffer.depth)});
   }
-  const auto message = [](const passes::Error& error) { return error.message; };
   const auto pass_count = [&] {
     return static_cast<std::uint32_t>(graph.description().passes.size());
   };
   const std::uint32_t first_pass = pass_count();
-  ALCOVE_TRY_VOID(
-      add_occlusion(graph, gpu.pipelines(), view, index, settings, textures).map_error(message));
+  ALCOVE_TRY_VOID(add_occlusion(graph, gpu.pipelines(), view, index, settings, textures)
+                      .map_error(&passes::Error::message));
   Occlusion result{textures[ALCOVE_IMAGE_VISIBILITY],
                    textures[ALCOVE_IMAGE_BENT_NORMAL],
                    textures[ALCOVE_IMAGE_SPECULAR],
@@ -73,9 +72,9 @@ Result<Occlusion> add_occlusion(Graph& graph, Gpu& gpu, const AlcoveViewInfo& vi
                    gbuffer.normal,
                    {first_pass, pass_count()}};
   if (!has_normals) {
-    ALCOVE_TRY(
-        const auto made,
-        passes::add_surface(graph, gpu.pipelines(), view.camera, gbuffer.depth).map_error(message));
+    ALCOVE_TRY(const auto made,
+               passes::add_surface(graph, gpu.pipelines(), view.camera, gbuffer.depth)
+                   .map_error(&passes::Error::message));
     result.normals = made.normals;
   }
   return result;

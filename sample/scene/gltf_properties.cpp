@@ -218,22 +218,17 @@ bool fits(const Property& property, const json& value) {
          (property.type == Type::number || number == std::floor(number));
 }
 
-// The path of a property that is wrong or missing, such as .nodes[3].scale[1], and the rest of the
-// sentence that begins with it.
-struct Fault {
-  std::string path;
-  std::string rest;
-};
-using Checked = tl::expected<void, Fault>;
+// The error is a sentence that begins with the path of a property that is wrong or missing, such as
+// .nodes[3].scale[1].
+using Checked = Result<void>;
 
 Checked wrong(const json& value, const Property& property, bool is_array) {
-  return tl::unexpected(
-      Fault{"", " is " + shown(value) + "; it must be " + expectation(property, is_array)});
+  return Failure(" is " + shown(value) + "; it must be " + expectation(property, is_array));
 }
 
 // Returns the result for a property as that of its parent, from which `step` leads to it.
-Checked at(std::string step, Checked checked) {
-  if (!checked) checked.error().path = step.append(checked.error().path);
+Checked at(const std::string& step, Checked checked) {
+  if (!checked) checked.error().insert(0, step);
   return checked;
 }
 
@@ -257,7 +252,7 @@ Checked copy_members(const std::vector<Property>& members, json& from, json& to)
     } else if (done && property.is_required) {
       const std::string expected = expectation(property, property.count != kSingle);
       return at(std::string(".").append(property.name),
-                tl::unexpected(Fault{"", " is missing; it must be " + expected}));
+                Failure(" is missing; it must be " + expected));
     }
   }
   return done;
@@ -290,8 +285,7 @@ Checked copy(const Property& property, json& from, json& to) {
 Result<json> checked_properties(json root) {
   static const Property file = read_rule(Rule::parse(kFile), Rule::parse(kTypes));
   json out;
-  if (auto copied = copy(file, root, out); !copied)
-    return tl::unexpected(copied.error().path.substr(1) + copied.error().rest);
+  if (auto copied = copy(file, root, out); !copied) return Failure(copied.error().substr(1));
   return out;
 }
 

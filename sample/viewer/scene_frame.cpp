@@ -172,7 +172,7 @@ Result<Texture> SceneFrame::add_picture(Graph& graph, const ViewState& state,
     case Picture::depth:
       return passes::add_surface(graph, gpu_.pipelines(), view.camera, surfaces.gbuffer.depth)
           .map([](const passes::SurfaceTextures& made) { return made.linear_depth; })
-          .map_error([](const passes::Error& error) { return error.message; });
+          .map_error(&passes::Error::message);
     case Picture::albedo:
       return surfaces.gbuffer.albedo;
     case Picture::motion:

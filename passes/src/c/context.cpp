@@ -31,9 +31,9 @@ Result create(const AlcoveContextInfo& info, AlcoveContext*& context) {
   options.frames_in_flight = info.frames_in_flight;
   options.timestamps = info.timestamps != VK_FALSE;
   auto executor = framegraph::Executor::create(handles, options);
-  if (!executor) return tl::unexpected(passes::failure_of(executor.error()));
+  if (!executor) return tl::unexpected(passes::first_error(executor.error()));
   auto pipelines = passes::Pipelines::create(handles, info.frames_in_flight, info.pipeline_cache);
-  if (!pipelines) return tl::unexpected(passes::failure_of(pipelines.error(), "The context"));
+  if (!pipelines) return tl::unexpected(passes::with_prefix("The context: ")(pipelines.error()));
   context = std::make_unique<AlcoveContext>(std::move(host), std::move(*executor),
                                             std::move(*pipelines), handles, info.frames_in_flight)
                 .release();

@@ -11,8 +11,8 @@ namespace alcove::passes {
 
 namespace {
 
-tl::unexpected<Failure> unsupported(std::string message) {
-  return tl::unexpected(Failure{ALCOVE_ERROR_UNSUPPORTED, std::move(message)});
+tl::unexpected<Error> unsupported(std::string message) {
+  return tl::unexpected(Error{std::move(message), ALCOVE_ERROR_UNSUPPORTED});
 }
 
 std::string version_text(std::uint32_t version) {
@@ -53,8 +53,7 @@ Features features_in(const void* chain) {
   return all;
 }
 
-tl::expected<void, Failure> check_features(const Features& features, std::string_view who,
-                                           const char* remedy) {
+Result check_features(const Features& features, std::string_view who, const char* remedy) {
   if (!features.ends)
     return invalid(std::string(who) +
                    " is a chain of structs that does not end; end it with null.");
@@ -77,7 +76,7 @@ Function instance_function(const AlcoveContextInfo& info, const char* name) {
   return reinterpret_cast<Function>(info.get_instance_proc_addr(info.instance, name));
 }
 
-tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
+Result check_device(const AlcoveContextInfo& info) {
   const auto get_properties =
       instance_function<PFN_vkGetPhysicalDeviceProperties>(info, "vkGetPhysicalDeviceProperties");
   const auto get_features =
@@ -137,7 +136,7 @@ tl::expected<void, Failure> check_device(const AlcoveContextInfo& info) {
 
 }  // namespace
 
-tl::expected<void, Failure> check(const AlcoveContextInfo* info) {
+Result check(const AlcoveContextInfo* info) {
   if (info == nullptr) return invalid("There is no AlcoveContextInfo.");
   if (auto valid = check_size(info->struct_size, sizeof *info, "AlcoveContextInfo"); !valid)
     return valid;

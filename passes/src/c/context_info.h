@@ -10,6 +10,6 @@ namespace alcove::passes {
 
 // Returns an error if a required field is missing or the device lacks something that the passes
 // need.
-[[nodiscard]] tl::expected<void, Failure> check(const AlcoveContextInfo* info);
+[[nodiscard]] Result check(const AlcoveContextInfo* info);
 
 }  // namespace alcove::passes

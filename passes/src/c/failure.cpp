@@ -3,32 +3,15 @@
 #include <algorithm>
 #include <cctype>
 
+#include "vulkan/vulkan_error.h"
+
 namespace alcove::passes {
 namespace {
 
-AlcoveResult result_of(VkResult result) {
-  switch (result) {
-    case VK_SUCCESS:
-      return ALCOVE_ERROR_INVALID_INPUT;
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-      return ALCOVE_ERROR_OUT_OF_HOST_MEMORY;
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-    case VK_ERROR_OUT_OF_POOL_MEMORY:
-    case VK_ERROR_FRAGMENTED_POOL:
-      return ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY;
-    case VK_ERROR_DEVICE_LOST:
-      return ALCOVE_ERROR_DEVICE_LOST;
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-      return ALCOVE_ERROR_UNSUPPORTED;
-    default:
-      return ALCOVE_ERROR_VULKAN;
-  }
-}
-
-AlcoveResult result_of(const framegraph::Error& error) {
+AlcoveResult error_code(const framegraph::Error& error) {
   switch (error.code) {
     case framegraph::ErrorCode::vulkan:
-      return result_of(error.result);
+      return passes::error_code(error.result);
     case framegraph::ErrorCode::unsupported_format:
       return ALCOVE_ERROR_UNSUPPORTED;
     case framegraph::ErrorCode::missing_usage:
@@ -51,21 +34,10 @@ std::string as_sentence(std::string text) {
 
 }  // namespace
 
-Failure failure_of(const framegraph::Errors& errors) {
-  if (errors.empty()) return {ALCOVE_ERROR_INTERNAL, "The frame failed without an error."};
-  return {result_of(errors.front()), as_sentence(errors.front().message)};
-}
-
-Failure failure_of(const Error& error, std::string_view where) {
-  std::string message = std::string(where) + ": " + error.message;
-  const AlcoveResult result = result_of(error.result);
-  if (result == ALCOVE_ERROR_OUT_OF_HOST_MEMORY)
-    message += " The host is out of memory.";
-  else if (result == ALCOVE_ERROR_OUT_OF_DEVICE_MEMORY)
-    message += " The device is out of memory.";
-  else if (error.result != VK_SUCCESS && error.result != VK_ERROR_FEATURE_NOT_PRESENT)
-    message += " Vulkan's result is " + std::to_string(error.result) + ".";
-  return {result, std::move(message)};
+Error first_error(const framegraph::Errors& errors) {
+  if (errors.empty()) return {"The frame failed without an error.", ALCOVE_ERROR_INTERNAL};
+  const framegraph::Error& first = errors.front();
+  return {as_sentence(first.message), error_code(first), first.result};
 }
 
 std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
@@ -79,7 +51,7 @@ std::size_t copy_text(std::string_view from, char* text, std::size_t size) {
 
 AlcoveResult keep(char* message, const Result& result) {
   copy_text(result ? "" : std::string_view(result.error().message), message, ALCOVE_MAX_MESSAGE);
-  return result ? ALCOVE_SUCCESS : result.error().result;
+  return result ? ALCOVE_SUCCESS : result.error().code;
 }
 
 }  // namespace alcove::passes

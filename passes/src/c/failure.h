@@ -1,5 +1,4 @@
-// How functions of the C interface run calls that can fail, and the result and message of those
-// that did.
+// How functions of the C interface run calls that can fail, and return the errors of those that do.
 #pragma once
 
 #include <array>
@@ -15,27 +14,28 @@
 
 namespace alcove::passes {
 
-struct Failure {
-  AlcoveResult result = ALCOVE_ERROR_INVALID_INPUT;
-  std::string message;
-};
-
 using Message = std::array<char, ALCOVE_MAX_MESSAGE>;
-using Result = tl::expected<void, Failure>;
+using Result = tl::expected<void, Error>;
 
-[[nodiscard]] inline tl::unexpected<Failure> invalid(std::string message) {
-  return tl::unexpected(Failure{ALCOVE_ERROR_INVALID_INPUT, std::move(message)});
+[[nodiscard]] inline tl::unexpected<Error> invalid(std::string message) {
+  return tl::unexpected(Error{std::move(message)});
 }
 
-[[nodiscard]] Failure failure_of(const framegraph::Errors& errors);
-// `where` begins the sentence, such as "View 3".
-[[nodiscard]] Failure failure_of(const Error& error, std::string_view where);
+// Returns the first of the errors of a graph, as an error of the passes.
+[[nodiscard]] Error first_error(const framegraph::Errors& errors);
+// Returns a function for map_error() that puts a text, such as "View 3: ", before the sentence.
+[[nodiscard]] inline auto with_prefix(std::string prefix) {
+  return [prefix = std::move(prefix)](Error error) {
+    error.message.insert(0, prefix);
+    return error;
+  };
+}
 
 // Checks that `given`, the struct_size of a struct of the C interface, is the struct's size in this
 // version of the header. The message names `type`. When a later version of the header enlarges a
 // struct, this function is the place to accept the earlier size.
-[[nodiscard]] inline tl::expected<void, Failure> check_size(std::uint32_t given, std::size_t known,
-                                                            std::string_view type) {
+[[nodiscard]] inline Result check_size(std::uint32_t given, std::size_t known,
+                                       std::string_view type) {
   if (given == known) return {};
   return invalid(std::string(type) + "::struct_size is " + std::to_string(given) +
                  "; set it to sizeof(" + std::string(type) + "), which is " +

@@ -12,7 +12,6 @@
 #include "c/view.h"
 
 using namespace alcove;
-using passes::Failure;
 using passes::guarded;
 using passes::invalid;
 using passes::Result;
@@ -77,8 +76,8 @@ struct Declaration {
   bool recorded = false;
 };
 
-tl::expected<ViewPasses, Failure> add_views(framegraph::Graph& graph, AlcoveContext& context,
-                                            const AlcoveFrame& frame, bool prepare) {
+tl::expected<ViewPasses, passes::Error> add_views(framegraph::Graph& graph, AlcoveContext& context,
+                                                  const AlcoveFrame& frame, bool prepare) {
   ViewPasses passes;
   context.images.reset();
   for (const AlcoveView& view : std::span(frame.views, frame.view_count)) {
@@ -101,7 +100,7 @@ Result prepare(AlcoveContext& context, const AlcoveFrame* frame) {
     return tl::unexpected(std::move(passes.error()));
   // Compiles for the errors alone, such as an image that the device cannot use in this way.
   if (const auto plan = framegraph::compile(graph, context.executor.limits()); !plan)
-    return tl::unexpected(passes::failure_of(plan.error()));
+    return tl::unexpected(passes::first_error(plan.error()));
   return {};
 }
 
@@ -123,7 +122,7 @@ Result record(AlcoveContext& context, VkCommandBuffer commands, const AlcoveFram
         "a second; call alcovePrepareFrame while loading.");
   }
   const auto report = context.executor.record(context.graph, commands, {frame->slot});
-  if (!report) return tl::unexpected(passes::failure_of(report.error()));
+  if (!report) return tl::unexpected(passes::first_error(report.error()));
   context.report = *report;
   context.slot = frame->slot;
   context.may_discard = declaration.recorded = true;

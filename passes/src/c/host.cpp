@@ -4,7 +4,7 @@
 
 namespace alcove::passes {
 
-tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info) {
+Result check_memory(const AlcoveContextInfo& info) {
   const AlcoveMemoryFunctions& memory = info.memory_functions;
   if ((memory.allocate == nullptr) != (memory.free == nullptr)) {
     return invalid(

@@ -8,7 +8,7 @@
 namespace alcove::passes {
 
 // Returns an error if only one of the memory functions is given.
-[[nodiscard]] tl::expected<void, Failure> check_memory(const AlcoveContextInfo& info);
+[[nodiscard]] Result check_memory(const AlcoveContextInfo& info);
 
 // Calls the engine's allocators and log from the hooks of the C++ libraries. The object must not
 // move and must outlive every user of services().

@@ -29,9 +29,7 @@ std::string_view trimmed(std::string_view text) {
 
 Result check(const AlcoveSettings* settings) {
   if (settings == nullptr) return invalid("There are no settings: alcoveGetSettings gives some.");
-  return validate(*settings).map_error([](const Error& error) {
-    return Failure{ALCOVE_ERROR_INVALID_INPUT, error.message};
-  });
+  return validate(*settings);
 }
 
 // Changes the setting that a line names.
@@ -44,9 +42,7 @@ Result read_line(std::string_view line, AlcoveSettings& settings) {
   // A value that is cut is still none that a setting allows.
   const std::string name = shown(trimmed(line.substr(0, equals)));
   const std::string value = shown(trimmed(line.substr(equals + 1)));
-  return parse_setting(settings, name, value).map_error([](const Error& error) {
-    return Failure{ALCOVE_ERROR_INVALID_INPUT, error.message};
-  });
+  return parse_setting(settings, name, value);
 }
 
 Result read(const char* text, std::size_t length, AlcoveSettings* settings) {

@@ -14,7 +14,9 @@ namespace {
 
 using framegraph::Texture;
 
-std::string view_name(const AlcoveView& view) { return "View " + std::to_string(view.info.id); }
+std::string view_prefix(const AlcoveView& view) {
+  return "View " + std::to_string(view.info.id) + ": ";
+}
 
 bool same_state(const AlcoveState& a, const AlcoveState& b) {
   return a.stages == b.stages && a.access == b.access && a.layout == b.layout;
@@ -66,13 +68,13 @@ bool overlap(const AlcoveArea& a, const AlcoveArea& b) {
 
 }  // namespace
 
-tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, const AlcoveView& view,
-                                                  std::uint32_t role) {
+tl::expected<Texture, Error> ImageTable::import(framegraph::Graph& graph, const AlcoveView& view,
+                                                std::uint32_t role) {
   const AlcoveImage& image = view.images[role];
   if (image.image == VK_NULL_HANDLE) return Texture{};
   const bool output = is_output(role);
   const auto fail = [&](const std::string& problem) {
-    return invalid(view_name(view) + ": The image of " + role_name(role) + " " + problem);
+    return invalid(view_prefix(view) + "The image of " + role_name(role) + " " + problem);
   };
   if (const std::string problem = vulkan_problem(image, output); !problem.empty())
     return fail(problem);
@@ -123,11 +125,9 @@ tl::expected<Texture, Failure> ImageTable::import(framegraph::Graph& graph, cons
   return texture;
 }
 
-tl::expected<void, Failure> add_view(framegraph::Graph& graph, Pipelines& pipelines,
-                                     ImageTable& images, const AlcoveView& view,
-                                     const AlcoveFrame& frame, bool prepare,
-                                     PixelObserver* observer) {
-  const auto failed = [&](const Error& error) { return failure_of(error, view_name(view)); };
+Result add_view(framegraph::Graph& graph, Pipelines& pipelines, ImageTable& images,
+                const AlcoveView& view, const AlcoveFrame& frame, bool prepare,
+                PixelObserver* observer) {
   ViewTextures textures;
   for (std::uint32_t role = 0; role < ALCOVE_IMAGE_COUNT; ++role) {
     auto texture = images.import(graph, view, role);
@@ -136,14 +136,14 @@ tl::expected<void, Failure> add_view(framegraph::Graph& graph, Pipelines& pipeli
   }
   if (prepare) {
     if (auto done = prepare_view(graph, pipelines, view.info, textures); !done)
-      return tl::unexpected(failed(done.error()));
+      return done.map_error(with_prefix(view_prefix(view)));
   }
   const ViewTextures inputs = textures;
   if (auto done = add_view(graph, pipelines, view.info, frame.index, textures); !done)
-    return tl::unexpected(failed(done.error()));
+    return done.map_error(with_prefix(view_prefix(view)));
   if (observer == nullptr || view.images[ALCOVE_IMAGE_DEPTH].samples > 1) return {};
   return observer->add(graph, pipelines, view, inputs, frame.slot)
-      .map_error([](const Error& error) { return failure_of(error, "View"); });
+      .map_error(with_prefix(view_prefix(view)));
 }
 
 }  // namespace alcove::passes

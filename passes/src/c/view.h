@@ -17,9 +17,9 @@ class ImageTable {
   void reset() { count_ = part_count_ = 0; }
 
   // Checks and imports an image of a view. Returns a null texture if there is no image.
-  [[nodiscard]] tl::expected<framegraph::Texture, Failure> import(framegraph::Graph& graph,
-                                                                  const AlcoveView& view,
-                                                                  std::uint32_t role);
+  [[nodiscard]] tl::expected<framegraph::Texture, Error> import(framegraph::Graph& graph,
+                                                                const AlcoveView& view,
+                                                                std::uint32_t role);
 
  private:
   struct Entry {
@@ -45,9 +45,8 @@ class PixelObserver;
 // Adds the passes of `view` to the graph, or with `prepare` only creates their pipelines. If
 // `observer` is not null, it adds a pass that samples the view's pixels for the frame slot
 // AlcoveFrame::slot.
-[[nodiscard]] tl::expected<void, Failure> add_view(framegraph::Graph& graph, Pipelines& pipelines,
-                                                   ImageTable& images, const AlcoveView& view,
-                                                   const AlcoveFrame& frame, bool prepare,
-                                                   PixelObserver* observer);
+[[nodiscard]] Result add_view(framegraph::Graph& graph, Pipelines& pipelines, ImageTable& images,
+                              const AlcoveView& view, const AlcoveFrame& frame, bool prepare,
+                              PixelObserver* observer);
 
 }  // namespace alcove::passes

@@ -32,8 +32,6 @@ Result check(const AlcoveWorkInfo* info) {
   return invalid("AlcoveWorkInfo::previous is not a list that alcoveDescribeWork has filled.");
 }
 
-passes::Failure failed(const passes::Error& error) { return passes::failure_of(error, "The view"); }
-
 Result describe(const AlcoveWorkInfo& original, AlcoveWork& work) {
   AlcoveWorkInfo info = original;
   AlcoveViewInfo& view = info.view;
@@ -44,17 +42,19 @@ Result describe(const AlcoveWorkInfo& original, AlcoveWork& work) {
     view.previous_height = previous->height;
   }
   passes::WorkBuilder list(work, previous);
-  return passes::describe_view(list, info).map_error(failed);
+  return passes::describe_view(list, info).map_error(passes::with_prefix("The view: "));
 }
 
 Result list_pipelines(const AlcoveWorkInfo& info, std::uint32_t& count,
                       AlcoveWorkPipeline* pipelines) {
   const auto work = std::make_unique<AlcoveWork>();
-  return passes::list_pipelines(*work, info).map_error(failed).map([&](const auto& list) {
-    const auto there = static_cast<std::uint32_t>(list.size());
-    count = pipelines == nullptr ? there : std::min(count, there);
-    if (pipelines != nullptr) std::copy_n(list.begin(), count, pipelines);
-  });
+  return passes::list_pipelines(*work, info)
+      .map_error(passes::with_prefix("The view: "))
+      .map([&](const auto& list) {
+        const auto there = static_cast<std::uint32_t>(list.size());
+        count = pipelines == nullptr ? there : std::min(count, there);
+        if (pipelines != nullptr) std::copy_n(list.begin(), count, pipelines);
+      });
 }
 
 }  // namespace

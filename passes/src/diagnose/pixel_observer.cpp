@@ -33,9 +33,9 @@ tl::expected<void, Error> PixelObserver::add(framegraph::Graph& graph, Pipelines
   const AlcoveViewInfo& info = view.info;
   Pending& pending = pending_.at(slot);
   if (!pending.buffer) {
-    auto made = HostBuffer::create(vk_, device_, kBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!made)
-      return tl::unexpected(Error{"The buffer for pixels could not be created.", made.error()});
+    auto made = HostBuffer::create(vk_, device_, "the buffer for pixels", kBytes,
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!made) return tl::unexpected(std::move(made.error()));
     pending.buffer = std::move(*made);
   }
   const auto pipeline = pipelines.state().get(Shader::inspect);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "vulkan/vulkan_error.h"
 #include "work/shader_table.h"
 
 namespace alcove::passes {
@@ -26,16 +27,11 @@ tl::expected<std::unique_ptr<DescriptorSets>, Error> DescriptorSets::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
     std::uint32_t slot_count) {
   std::unique_ptr<DescriptorSets> sets(new DescriptorSets(vk, device));
-  if (const VkResult result = sets->create_pools(slot_count); result != VK_SUCCESS) {
-    return tl::unexpected(
-        Error{"The occlusion passes could not create a descriptor pool.", result});
-  }
-  auto parameters =
-      HostBuffer::create(vk, device, sets->parameter_bytes(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-  if (!parameters) {
-    return tl::unexpected(Error{"The occlusion passes could not create the buffer of parameters.",
-                                parameters.error()});
-  }
+  if (const VkResult result = sets->create_pools(slot_count); result != VK_SUCCESS)
+    return creation_error("a descriptor pool", result);
+  auto parameters = HostBuffer::create(vk, device, "the buffer of parameters",
+                                       sets->parameter_bytes(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  if (!parameters) return tl::unexpected(std::move(parameters.error()));
   sets->parameters_ = std::move(*parameters);
   return sets;
 }

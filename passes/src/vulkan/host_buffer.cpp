@@ -1,19 +1,20 @@
 #include "vulkan/host_buffer.h"
 
 #include "alcove/framegraph/device_memory.h"
+#include "vulkan/vulkan_error.h"
 
 namespace alcove::passes {
 
-tl::expected<std::unique_ptr<HostBuffer>, VkResult> HostBuffer::create(
+tl::expected<std::unique_ptr<HostBuffer>, Error> HostBuffer::create(
     const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
-    VkDeviceSize size, VkBufferUsageFlags usage) {
+    std::string_view name, VkDeviceSize size, VkBufferUsageFlags usage) {
   std::unique_ptr<HostBuffer> host_buffer(new HostBuffer(vk, device));
   const VkBufferCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
   VkResult result = vk.vkCreateBuffer(device.device, &info, device.host.allocation_callbacks,
                                       &host_buffer->buffer_);
   if (result == VK_SUCCESS) result = host_buffer->allocate();
-  if (result != VK_SUCCESS) return tl::unexpected(result);
+  if (result != VK_SUCCESS) return creation_error(name, result);
   return host_buffer;
 }
 

@@ -5,9 +5,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "alcove/framegraph/executor.h"
+#include "alcove/passes/error.h"
 
 namespace alcove::passes {
 
@@ -15,9 +17,10 @@ namespace alcove::passes {
 // caller's allocators must outlive it. Destroy it only after the device has finished using it.
 class HostBuffer {
  public:
-  [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, VkResult> create(
+  // The error calls the buffer `name`.
+  [[nodiscard]] static tl::expected<std::unique_ptr<HostBuffer>, Error> create(
       const framegraph::VulkanFunctions& vk, const framegraph::DeviceHandles& device,
-      VkDeviceSize size, VkBufferUsageFlags usage);
+      std::string_view name, VkDeviceSize size, VkBufferUsageFlags usage);
   ~HostBuffer();
   HostBuffer(const HostBuffer&) = delete;
   HostBuffer& operator=(const HostBuffer&) = delete;

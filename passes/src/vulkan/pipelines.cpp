@@ -6,14 +6,10 @@
 #include <utility>
 
 #include "vulkan/pipeline_state.h"
+#include "vulkan/vulkan_error.h"
 
 namespace alcove::passes {
 namespace {
-
-tl::unexpected<Error> failure(std::string_view what, VkResult result) {
-  return tl::unexpected(
-      Error{"The occlusion passes could not create " + std::string(what) + ".", result});
-}
 
 const ShaderInterface& interface_of(std::size_t shader) {
   return shader_interface(static_cast<Shader>(shader));
@@ -50,7 +46,7 @@ tl::expected<void, Error> Pipelines::State::check_limits() const {
                                   "' binds at most " + std::to_string(limit) +
                                   " storage images to a shader; the occlusion passes need " +
                                   std::to_string(needed) + ".",
-                              VK_ERROR_FEATURE_NOT_PRESENT});
+                              ALCOVE_ERROR_UNSUPPORTED});
 }
 
 tl::expected<void, Error> Pipelines::State::create_sampler() {
@@ -61,7 +57,7 @@ tl::expected<void, Error> Pipelines::State::create_sampler() {
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
   if (const VkResult result = vk.vkCreateSampler(device(), &info, callbacks(), &sampler);
       result != VK_SUCCESS)
-    return failure("a sampler", result);
+    return creation_error("a sampler", result);
   return {};
 }
 
@@ -81,14 +77,14 @@ tl::expected<void, Error> Pipelines::State::create_layout(std::size_t shader) {
   if (const VkResult result =
           vk.vkCreateDescriptorSetLayout(device(), &set_info, callbacks(), &objects.set_layout);
       result != VK_SUCCESS)
-    return failure("a descriptor set layout", result);
+    return creation_error("a descriptor set layout", result);
   const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                         .setLayoutCount = 1,
                                         .pSetLayouts = &objects.set_layout};
   if (const VkResult result =
           vk.vkCreatePipelineLayout(device(), &info, callbacks(), &objects.pipeline_layout);
       result != VK_SUCCESS)
-    return failure("a pipeline layout", result);
+    return creation_error("a pipeline layout", result);
   return {};
 }
 
@@ -115,7 +111,7 @@ tl::expected<void, Error> Pipelines::State::create_module(std::size_t shader) {
                                       .pCode = code.data()};
   if (const VkResult result = vk.vkCreateShaderModule(device(), &info, callbacks(), &module);
       result != VK_SUCCESS)
-    return failure("a shader module", result);
+    return creation_error("a shader module", result);
   return {};
 }
 
@@ -123,9 +119,9 @@ tl::expected<void, Error> Pipelines::State::create_module(std::size_t shader) {
 tl::expected<void, Error> Pipelines::State::create_table(std::size_t shader) {
   const std::span<const std::uint32_t> table = shader_source(static_cast<Shader>(shader)).table;
   if (table.empty() || shaders[shader].table) return {};
-  auto buffer =
-      HostBuffer::create(vk, handles, table.size_bytes(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-  if (!buffer) return failure("the buffer of a table", buffer.error());
+  auto buffer = HostBuffer::create(vk, handles, "the buffer of a table", table.size_bytes(),
+                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  if (!buffer) return tl::unexpected(std::move(buffer.error()));
   std::memcpy((*buffer)->bytes(), table.data(), table.size_bytes());
   shaders[shader].table = std::move(*buffer);
   return {};
@@ -161,7 +157,7 @@ tl::expected<Pipeline, Error> Pipelines::State::create_pipeline(
   if (const VkResult result =
           vk.vkCreateComputePipelines(device(), cache, 1, &info, callbacks(), &pipeline.pipeline);
       result != VK_SUCCESS)
-    return failure("a compute pipeline", result);
+    return creation_error("a compute pipeline", result);
   cached.push_back(std::move(pipeline));
   if (const framegraph::Log& log = handles.host.log; log.write != nullptr)
     log.write(log.user, framegraph::Severity::info, "A compute pipeline has been created.");
@@ -194,7 +190,7 @@ tl::expected<Pipelines, Error> Pipelines::create(const framegraph::DeviceHandles
         Error{std::string("The device has no function ") + missing +
                   "; create instance and device for Vulkan 1.3, or for Vulkan 1.2 with "
                   "VK_KHR_synchronization2.",
-              VK_ERROR_FEATURE_NOT_PRESENT});
+              ALCOVE_ERROR_UNSUPPORTED});
   }
   state->handles = device;
   state->cache = cache;

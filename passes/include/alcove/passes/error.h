@@ -1,17 +1,19 @@
-// The error of the C++ interface of the passes.
+// The error of the passes, of their C++ interface and behind their C interface.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
 #include <string>
 
+#include "alcove/alcove_result.h"
+
 namespace alcove::passes {
 
-// The reason why a pass could not be added. `message` is a sentence. `result` is that of the Vulkan
-// call that failed, or VK_ERROR_FEATURE_NOT_PRESENT if the device lacks a function or its limits
-// are too small.
+// `message` is a sentence. `code` is what the functions of the C interface return for the error.
+// `result` is that of the Vulkan call that failed, or VK_SUCCESS if none did.
 struct Error {
   std::string message;
+  AlcoveResult code = ALCOVE_ERROR_INVALID_INPUT;
   VkResult result = VK_SUCCESS;
 };
 
