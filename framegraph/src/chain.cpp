@@ -12,7 +12,7 @@ namespace {
 class Chainer {
  public:
   Chainer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan)
-      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), s_(workspace.chain) {}
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan) {}
 
   void run() {
     s_.uses.clear();
@@ -177,7 +177,7 @@ class Chainer {
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
-  Workspace::Chain& s_;
+  Workspace::Chain& s_ = workspace_.chain;
 };
 
 }  // namespace

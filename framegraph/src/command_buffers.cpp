@@ -9,19 +9,18 @@ void CommandBuffers::destroy(const DeviceContext& device) {
 VkResult CommandBuffers::next(const DeviceContext& device, QueueClass queue,
                               VkCommandBuffer& commands) {
   if (pool_ == VK_NULL_HANDLE) {
-    VkCommandPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    info.queueFamilyIndex = device.limits.queue_families[static_cast<std::size_t>(queue)];
+    const VkCommandPoolCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .queueFamilyIndex = device.limits.queue_families[static_cast<std::size_t>(queue)]};
     const VkResult result =
         device.vk.vkCreateCommandPool(device.handles.device, &info, device.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;
   }
   if (used_ == buffers_.size()) {
-    VkCommandBufferAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    info.commandPool = pool_;
-    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    info.commandBufferCount = 1;
+    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = pool_,
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
     VkCommandBuffer buffer = VK_NULL_HANDLE;
     const VkResult result =
         device.vk.vkAllocateCommandBuffers(device.handles.device, &info, &buffer);

@@ -18,28 +18,25 @@ void share(Info& info, const DeviceContext& device, bool concurrent) {
 
 VkImageCreateInfo image_info(const DeviceContext& device, const ResourceRecord& record,
                              VkFlags usage, bool concurrent) {
-  VkImageCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
-  info.flags = record.create_flags;
-  info.format = record.format;
-  info.extent = {record.width, record.height, record.depth};
-  info.mipLevels = record.mips;
-  info.arrayLayers = record.layers;
-  info.samples = static_cast<VkSampleCountFlagBits>(record.samples);
-  info.tiling = VK_IMAGE_TILING_OPTIMAL;
-  info.usage = usage;
+  VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                         .flags = record.create_flags,
+                         .imageType = record.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D,
+                         .format = record.format,
+                         .extent = {record.width, record.height, record.depth},
+                         .mipLevels = record.mips,
+                         .arrayLayers = record.layers,
+                         .samples = static_cast<VkSampleCountFlagBits>(record.samples),
+                         .tiling = VK_IMAGE_TILING_OPTIMAL,
+                         .usage = usage,
+                         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
   share(info, device, concurrent);
-  info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
   return info;
 }
 
 VkBufferCreateInfo buffer_info(const DeviceContext& device, const ResourceRecord& record,
                                VkFlags usage, bool concurrent) {
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = record.size;
-  info.usage = usage;
+  VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = record.size, .usage = usage};
   share(info, device, concurrent);
   return info;
 }
@@ -82,8 +79,7 @@ ImageLimits image_limits(const void* context, const ResourceRecord& record, VkFl
                                               image.tiling,
                                               image.usage,
                                               image.flags};
-  VkImageFormatProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
+  VkImageFormatProperties2 properties{.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2};
   const VkResult result = device.vk.vkGetPhysicalDeviceImageFormatProperties2(
       device.handles.physical_device, &info, &properties);
   if (result != VK_SUCCESS) return {};
@@ -120,14 +116,13 @@ VkImageUsageFlags format_usage(const void* context, VkFormat format) {
 // Returns the largest size of a buffer in bytes. Without VK_KHR_maintenance4, that is the largest
 // size of one allocation.
 VkDeviceSize max_buffer_size(const DeviceContext& context) {
-  VkPhysicalDeviceMaintenance4Properties buffers{};
-  buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
-  VkPhysicalDeviceMaintenance3Properties allocations{};
-  allocations.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
-  if (context.vk.vkGetDeviceBufferMemoryRequirements) allocations.pNext = &buffers;
-  VkPhysicalDeviceProperties2 all{};
-  all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-  all.pNext = &allocations;
+  VkPhysicalDeviceMaintenance4Properties buffers{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
+  VkPhysicalDeviceMaintenance3Properties allocations{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES,
+      .pNext = context.vk.vkGetDeviceBufferMemoryRequirements ? &buffers : nullptr};
+  VkPhysicalDeviceProperties2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                  .pNext = &allocations};
   context.vk.vkGetPhysicalDeviceProperties2(context.handles.physical_device, &all);
   if (buffers.maxBufferSize != 0) return buffers.maxBufferSize;
   if (allocations.maxMemoryAllocationSize != 0) return allocations.maxMemoryAllocationSize;
@@ -190,10 +185,7 @@ bool has_validation_layers(const DeviceHandles& handles) {
 }
 
 Errors missing(std::string what) {
-  Errors errors(1);
-  errors[0].message = std::move(what);
-  errors[0].result = VK_ERROR_FEATURE_NOT_PRESENT;
-  return errors;
+  return {{ErrorCode::vulkan, std::move(what), VK_ERROR_FEATURE_NOT_PRESENT}};
 }
 
 }  // namespace
@@ -240,10 +232,7 @@ VkResult create_unbound(const DeviceContext& device, const ResourceRecord& recor
 }
 
 Errors vulkan_error(VkResult result, std::string what) {
-  Errors errors(1);
-  errors[0].message = std::move(what) + ": " + result_name(result);
-  errors[0].result = result;
-  return errors;
+  return {{ErrorCode::vulkan, std::move(what) + ": " + result_name(result), result}};
 }
 
 const char* result_name(VkResult result) {

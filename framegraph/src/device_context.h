@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "alcove/framegraph/error.h"
@@ -22,6 +23,12 @@ struct DeviceContext {
   std::vector<std::uint32_t> families;  // of the queues, each once
 
   const VkAllocationCallbacks* callbacks() const { return handles.host.allocation_callbacks; }
+};
+
+// A name for the debuggers of Vulkan, cut to 63 bytes.
+struct DebugName {
+  explicit DebugName(std::string_view name) { name.copy(text, sizeof text - 1); }
+  char text[64] = {};
 };
 
 // Fetches the functions, properties and limits of a device. The error names the function or feature

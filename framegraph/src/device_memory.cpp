@@ -23,14 +23,12 @@ VkResult allocate_from_vulkan(const VulkanFunctions& vk, const DeviceHandles& de
                               const MemoryRequest& request, MemoryRange& range) {
   VkPhysicalDeviceMemoryProperties memory{};
   vk.vkGetPhysicalDeviceMemoryProperties(device.physical_device, &memory);
-  VkMemoryAllocateFlagsInfo flags{};
-  flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
-  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-  VkMemoryAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  if (request.device_address) info.pNext = &flags;
-  info.allocationSize = request.requirements.size;
-  info.memoryTypeIndex = memory_type(memory, request);
+  const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                        .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
+  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                  .pNext = request.device_address ? &flags : nullptr,
+                                  .allocationSize = request.requirements.size,
+                                  .memoryTypeIndex = memory_type(memory, request)};
   if (info.memoryTypeIndex == kNone) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkResult result =
       vk.vkAllocateMemory(device.device, &info, device.host.allocation_callbacks, &range.memory);

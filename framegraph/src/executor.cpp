@@ -13,10 +13,7 @@ namespace alcove::framegraph {
 namespace {
 
 tl::unexpected<Errors> failure(ErrorCode code, std::string message) {
-  Errors errors(1);
-  errors[0].code = code;
-  errors[0].message = std::move(message);
-  return tl::unexpected(std::move(errors));
+  return tl::unexpected(Errors{{code, std::move(message)}});
 }
 
 // The queues that a frame may use: one for record(), all of the device for submit().

@@ -61,14 +61,10 @@ bool Graph::lost_executor() const {
 }
 
 Error Graph::missing_callback(std::uint32_t pass) const {
-  return {ErrorCode::missing_callback,
-          std::string("pass '")
-              .append(description_.pass_name(pass))
-              .append("' is live but has nothing to record: call PassBuilder::record"),
-          VK_SUCCESS,
-          pass,
-          kNone,
-          0};
+  return {.code = ErrorCode::missing_callback,
+          .message = "pass '" + std::string(description_.pass_name(pass)) +
+                     "' is live but has nothing to record: call PassBuilder::record",
+          .pass = pass};
 }
 
 void Graph::destroy_callables() {

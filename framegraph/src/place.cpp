@@ -25,12 +25,7 @@ class Placer {
  public:
   Placer(const GraphDescription& graph, const Limits& limits, Workspace& workspace, Plan& plan,
          Errors& errors)
-      : graph_(graph),
-        limits_(limits),
-        workspace_(workspace),
-        plan_(plan),
-        errors_(errors),
-        s_(workspace.place) {}
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan), errors_(errors) {}
 
   bool run() {
     make_heaps();
@@ -239,7 +234,7 @@ class Placer {
   Workspace& workspace_;
   Plan& plan_;
   Errors& errors_;
-  Workspace::Place& s_;
+  Workspace::Place& s_ = workspace_.place;
   VkDeviceSize bytes_left_ = kMostBytes;
   VkDeviceSize best_ = 0;
 };

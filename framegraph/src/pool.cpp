@@ -22,7 +22,8 @@ bool belongs_to(const std::weak_ptr<const char>& life, const HistoryTable& table
   return !life.owner_before(own) && !own.owner_before(life);
 }
 
-// A handle is a pointer or an integer, depending on the platform. This cast works for both.
+// Returns the bits of an image or buffer; the other one is null. A handle is a pointer or an
+// integer, depending on the platform. This cast works for both.
 std::uint64_t handle_key(VkImage image, VkBuffer buffer) {
   return (std::uint64_t)image ^ (std::uint64_t)buffer;
 }
@@ -201,13 +202,13 @@ VkImageView Pool::view(Physical& physical, const Range& range, VkImageViewType t
   for (const CachedView& cached : physical.views)
     if (cached.range == range && cached.type == type && cached.format == format) return cached.view;
   make_room(physical.views);
-  VkImageViewCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  info.image = physical.image;
-  info.viewType = type;
-  info.format = format;
-  info.subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
-                           physical.layer + range.base_layer, range.layers};
+  const VkImageViewCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+      .image = physical.image,
+      .viewType = type,
+      .format = format,
+      .subresourceRange = {view_aspect(physical.record.format), range.base_mip, range.mips,
+                           physical.layer + range.base_layer, range.layers}};
   VkImageView view = VK_NULL_HANDLE;
   if (device_.vk.vkCreateImageView(device_.handles.device, &info, device_.callbacks(), &view) !=
       VK_SUCCESS)
@@ -313,17 +314,12 @@ void Pool::destroy(Physical& physical) {
 
 void Pool::set_name(const Physical& physical, std::string_view name) {
   if (!device_.handles.debug_utils || device_.vk.vkSetDebugUtilsObjectNameEXT == nullptr) return;
-  char text[64];
-  const std::size_t length = std::min(name.size(), sizeof text - 1);
-  std::memcpy(text, name.data(), length);
-  text[length] = '\0';
-  VkDebugUtilsObjectNameInfoEXT info{};
-  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
-  info.objectType = physical.image ? VK_OBJECT_TYPE_IMAGE : VK_OBJECT_TYPE_BUFFER;
-  // A handle is a pointer or an integer, depending on the platform. This cast works for both.
-  info.objectHandle =
-      physical.image ? (std::uint64_t)physical.image : (std::uint64_t)physical.buffer;
-  info.pObjectName = text;
+  const DebugName text(name);
+  const VkDebugUtilsObjectNameInfoEXT info{
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+      .objectType = physical.image ? VK_OBJECT_TYPE_IMAGE : VK_OBJECT_TYPE_BUFFER,
+      .objectHandle = handle_key(physical.image, physical.buffer),
+      .pObjectName = text.text};
   device_.vk.vkSetDebugUtilsObjectNameEXT(device_.handles.device, &info);
 }
 

@@ -21,12 +21,7 @@ class QueueAssigner {
  public:
   QueueAssigner(const GraphDescription& graph, const Limits& limits, Workspace& workspace,
                 Plan& plan)
-      : graph_(graph),
-        limits_(limits),
-        workspace_(workspace),
-        plan_(plan),
-        chain_(workspace.chain),
-        s_(workspace.queues) {}
+      : graph_(graph), limits_(limits), workspace_(workspace), plan_(plan) {}
 
   void run() {
     const auto count = static_cast<std::uint32_t>(plan_.passes.size());
@@ -309,8 +304,8 @@ class QueueAssigner {
   const Limits& limits_;
   Workspace& workspace_;
   Plan& plan_;
-  Workspace::Chain& chain_;
-  Workspace::Queues& s_;
+  Workspace::Chain& chain_ = workspace_.chain;
+  Workspace::Queues& s_ = workspace_.queues;
 };
 
 }  // namespace

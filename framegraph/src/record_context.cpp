@@ -13,12 +13,11 @@ Physical* RecordContext::physical(std::uint32_t resource, std::uint32_t version)
   if (recorder_.frame_.check_uses && record.slot != 0 && version == 0 &&
       !(access->flags & kWrite) && !graph.externals[record.external].has_contents &&
       !(asked_ >> resource % 64 & 1)) {
-    recorder_.errors_.push_back(
-        {ErrorCode::undeclared_use,
-         std::string("pass '").append(pass_name()).append("' uses '") +
-             std::string(graph.resource_name(resource)) + "' of " + std::to_string(record.slot) +
-             " frame(s) ago, which has no contents: ask RecordContext::validity before",
-         VK_SUCCESS, pass_, resource, version});
+    recorder_.fail(ErrorCode::undeclared_use, pass_,
+                   "uses '" + std::string(graph.resource_name(resource)) + "' of " +
+                       std::to_string(record.slot) +
+                       " frame(s) ago, which has no contents: ask RecordContext::validity before",
+                   resource, version);
     return nullptr;
   }
   return (*recorder_.frame_.physical)[resource];
@@ -46,13 +45,11 @@ VkImageView RecordContext::view(Texture texture, Range range, VkImageViewType ty
     }
   }
   const VkImageView view = recorder_.pool_.view(*used, range, type, format);
-  if (view == VK_NULL_HANDLE) {
-    recorder_.errors_.push_back(
-        {ErrorCode::vulkan,
-         std::string("no view of '").append(graph.resource_name(texture.index)) +
-             "' could be made: the device is out of memory",
-         VK_ERROR_OUT_OF_DEVICE_MEMORY, pass_, texture.index, texture.version});
-  }
+  if (view == VK_NULL_HANDLE)
+    recorder_.fail(ErrorCode::vulkan, pass_,
+                   "gets no view of '" + std::string(graph.resource_name(texture.index)) +
+                       "': the device is out of memory",
+                   texture.index, texture.version, VK_ERROR_OUT_OF_DEVICE_MEMORY);
   return view;
 }
 
@@ -103,8 +100,7 @@ bool RecordContext::begin_rendering(std::span<const Attachment> colors, const At
                                     const Rendering& rendering) const {
   constexpr std::size_t kMost = 8;
   const auto refuse = [this](ErrorCode code, const char* why) {
-    recorder_.errors_.push_back({code, std::string("pass '").append(pass_name()).append("' ") + why,
-                                 VK_SUCCESS, pass_, kNone, 0});
+    recorder_.fail(code, pass_, why);
     return false;
   };
   if (!vk.vkCmdBeginRendering || !vk.vkCmdEndRendering)
@@ -221,11 +217,9 @@ HistoryValidity RecordContext::validity(Texture texture) const {
 }
 
 void RecordContext::fail(std::string_view what, VkResult result) const {
-  recorder_.errors_.push_back(
-      {ErrorCode::vulkan,
-       std::string("pass '").append(pass_name()).append("' cannot be recorded: no ").append(what) +
-           " could be made",
-       result, pass_, kNone, 0});
+  recorder_.fail(ErrorCode::vulkan, pass_,
+                 "cannot be recorded: no " + std::string(what) + " could be made", kNone, 0,
+                 result);
 }
 
 std::string_view RecordContext::pass_name() const {

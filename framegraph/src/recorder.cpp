@@ -1,7 +1,6 @@
 #include "recorder.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "aspects.h"
 
@@ -10,11 +9,9 @@ namespace {
 
 // Returns a barrier with the execution dependency of a transition and no memory dependency.
 VkMemoryBarrier2 execution(const Transition& t) {
-  VkMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = t.src_stages;
-  barrier.dstStageMask = t.dst_stages;
-  return barrier;
+  return {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+          .srcStageMask = t.src_stages,
+          .dstStageMask = t.dst_stages};
 }
 
 }  // namespace
@@ -32,15 +29,14 @@ void Recorder::begin(const RecordedFrame& frame) {
 }
 
 void Recorder::full_barrier(VkCommandBuffer commands) {
-  VkMemoryBarrier2 all{};
-  all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-  all.srcStageMask = all.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  all.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  all.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &all;
+  const VkMemoryBarrier2 all{
+      .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+      .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+      .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+      .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+      .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+  const VkDependencyInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
   device_.vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
@@ -57,13 +53,9 @@ void Recorder::submission(std::uint32_t index, VkCommandBuffer commands, Timesta
 }
 
 void Recorder::begin_label(std::string_view name, VkCommandBuffer commands) const {
-  char text[64];
-  const std::size_t length = name.size() < sizeof text ? name.size() : sizeof text - 1;
-  std::memcpy(text, name.data(), length);
-  text[length] = '\0';
-  VkDebugUtilsLabelEXT info{};
-  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-  info.pLabelName = text;
+  const DebugName text(name);
+  const VkDebugUtilsLabelEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                  .pLabelName = text.text};
   device_.vk.vkCmdBeginDebugUtilsLabelEXT(commands, &info);
 }
 
@@ -119,13 +111,11 @@ VkDependencyInfo Recorder::dependency(const Batch& batch) {
       add_memory(memory);
     }
   }
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.memoryBarrierCount = static_cast<std::uint32_t>(memories_.size());
-  info.pMemoryBarriers = memories_.data();
-  info.imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size());
-  info.pImageMemoryBarriers = images_.data();
-  return info;
+  return {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+          .memoryBarrierCount = static_cast<std::uint32_t>(memories_.size()),
+          .pMemoryBarriers = memories_.data(),
+          .imageMemoryBarrierCount = static_cast<std::uint32_t>(images_.size()),
+          .pImageMemoryBarriers = images_.data()};
 }
 
 // Adds a memory barrier unless the dependency already contains the same one.
@@ -161,24 +151,23 @@ VkImageMemoryBarrier2 Recorder::image_barrier(const Transition& t) const {
   return barrier;
 }
 
+void Recorder::fail(ErrorCode code, std::uint32_t pass, const std::string& what,
+                    std::uint32_t resource, std::uint32_t version, VkResult result) const {
+  const std::string name(graph_->description().pass_name(pass));
+  errors_.push_back({code, "pass '" + name + "' " + what, result, pass, resource, version});
+}
+
 const AccessRecord* Recorder::declared(std::uint32_t pass, std::uint32_t resource) const {
   const GraphDescription& graph = graph_->description();
   for (const AccessRecord& access : graph.pass_accesses(pass))
     if (access.resource == resource) return &access;
-  if (frame_.check_uses) {
-    Error error;
-    error.code = ErrorCode::undeclared_use;
-    error.pass = pass;
-    error.resource = resource;
-    error.message = std::string("pass '").append(graph.pass_name(pass));
-    if (resource < graph.resources.size()) {
-      error.message.append("' uses '").append(graph.resource_name(resource));
-      error.message += "' while it records, which it did not declare: add a read or a write";
-    } else {
-      error.message += "' uses a null handle while it records";
-    }
-    errors_.push_back(std::move(error));
-  }
+  if (frame_.check_uses)
+    fail(ErrorCode::undeclared_use, pass,
+         resource >= graph.resources.size()
+             ? "uses a null handle while it records"
+             : "uses '" + std::string(graph.resource_name(resource)) +
+                   "' while it records, which it did not declare: add a read or a write",
+         resource);
   return nullptr;
 }
 
@@ -195,31 +184,29 @@ std::uint32_t Recorder::attachment_access(std::uint32_t pass, std::uint32_t reso
       return index;
     ++index;
   }
-  errors_.push_back({ErrorCode::undeclared_use,
-                     std::string("pass '").append(graph.pass_name(pass)) +
-                         "' draws to a texture, or a part of one, that it did not declare as an "
-                         "attachment: write it with access::color_attachment or "
-                         "access::depth_attachment",
-                     VK_SUCCESS, pass, resource, 0});
+  fail(ErrorCode::undeclared_use, pass,
+       "draws to a texture, or a part of one, that it did not declare as an attachment: write it "
+       "with access::color_attachment or access::depth_attachment",
+       resource);
   return kNone;
 }
 
 bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Range& range) const {
   const GraphDescription& graph = graph_->description();
   const ResourceRecord& record = graph.resources[resource];
-  const auto fail = [&](ErrorCode code, const std::string& reason) {
-    errors_.push_back({code,
-                       std::string("pass '").append(graph.pass_name(pass)) +
-                           "' asks for a view of '" + std::string(graph.resource_name(resource)) +
-                           "' from mip " + std::to_string(range.base_mip) + " and layer " +
-                           std::to_string(range.base_layer) + " on, " + reason,
-                       VK_SUCCESS, pass, resource, 0});
+  const auto refuse = [&](ErrorCode code, const std::string& reason) {
+    fail(code, pass,
+         "asks for a view of '" + std::string(graph.resource_name(resource)) + "' from mip " +
+             std::to_string(range.base_mip) + " and layer " + std::to_string(range.base_layer) +
+             " on, " + reason,
+         resource);
     return false;
   };
   if (range.mips == 0 || range.layers == 0 || range.base_mip + range.mips > record.mips ||
       range.base_layer + range.layers > record.layers)
-    return fail(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
-                                          " mips and " + std::to_string(record.layers) + " layers");
+    return refuse(ErrorCode::bad_range, "but the texture has " + std::to_string(record.mips) +
+                                            " mips and " + std::to_string(record.layers) +
+                                            " layers");
   if (!frame_.check_uses) return true;
   const auto is_declared = [&](std::uint32_t mip, std::uint32_t layer) {
     const auto accesses = graph.pass_accesses(pass);
@@ -231,8 +218,8 @@ bool Recorder::check_view(std::uint32_t pass, std::uint32_t resource, const Rang
   for (std::uint32_t layer = range.base_layer; layer < range.base_layer + range.layers; ++layer)
     for (std::uint32_t mip = range.base_mip; mip < range.base_mip + range.mips; ++mip)
       if (!is_declared(mip, layer))
-        return fail(ErrorCode::undeclared_use,
-                    "part of which it did not declare: add a read or a write of that range");
+        return refuse(ErrorCode::undeclared_use,
+                      "part of which it did not declare: add a read or a write of that range");
   return true;
 }
 

@@ -53,6 +53,10 @@ class Recorder {
   void add_memory(const VkMemoryBarrier2& barrier);
   VkImageMemoryBarrier2 image_barrier(const Transition& transition) const;
 
+  // Adds an error with the sentence "pass 'NAME' WHAT".
+  void fail(ErrorCode code, std::uint32_t pass, const std::string& what,
+            std::uint32_t resource = kNone, std::uint32_t version = 0,
+            VkResult result = VK_SUCCESS) const;
   // Returns the access with which the running pass declares this resource, or null if it declares
   // none. In that case adds an error if uses are checked.
   const AccessRecord* declared(std::uint32_t pass, std::uint32_t resource) const;

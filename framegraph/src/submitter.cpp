@@ -54,12 +54,10 @@ VkResult Submitter::prepare(std::uint32_t slot) {
   for (std::size_t q = 0; q < kQueueClasses; ++q) {
     if (device_.limits.queue_families[q] == kNone) continue;
     if (semaphores_[q] == VK_NULL_HANDLE) {
-      VkSemaphoreTypeCreateInfo type{};
-      type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-      type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-      VkSemaphoreCreateInfo info{};
-      info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-      info.pNext = &type;
+      const VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                           .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+      const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                       .pNext = &type};
       const VkResult result = device_.vk.vkCreateSemaphore(device_.handles.device, &info,
                                                            device_.callbacks(), &semaphores_[q]);
       if (result != VK_SUCCESS) return result;
@@ -117,9 +115,8 @@ VkResult Submitter::record(const Plan& plan, Recorder& recorder, std::uint32_t s
     VkCommandBuffer& buffer = recorded_[i];
     CommandBuffers& buffers = slots_[slot].queues[q].buffers;
     if (const VkResult result = buffers.next(device_, submission.queue, buffer)) return result;
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     if (const VkResult result = device_.vk.vkBeginCommandBuffer(buffer, &begin)) return result;
     if (!begun[q] && timestamps[q]) {
       const auto passes = static_cast<std::uint32_t>(plan.passes.size());
@@ -180,15 +177,13 @@ VkResult Submitter::flush(VkQueue queue) {
   for (const SubmissionInfo& d : submissions_) {
     if (!is_ready(d)) continue;
     const VkSemaphoreSubmitInfo* const semaphores = semaphore_infos_.data() + d.first_semaphore;
-    VkSubmitInfo2 info{};
-    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-    info.waitSemaphoreInfoCount = d.waits;
-    info.pWaitSemaphoreInfos = semaphores;
-    info.commandBufferInfoCount = 1;
-    info.pCommandBufferInfos = &d.commands;
-    info.signalSemaphoreInfoCount = d.signals;
-    info.pSignalSemaphoreInfos = semaphores + d.waits;
-    infos_.push_back(info);
+    infos_.push_back({.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                      .waitSemaphoreInfoCount = d.waits,
+                      .pWaitSemaphoreInfos = semaphores,
+                      .commandBufferInfoCount = 1,
+                      .pCommandBufferInfos = &d.commands,
+                      .signalSemaphoreInfoCount = d.signals,
+                      .pSignalSemaphoreInfos = semaphores + d.waits});
   }
   const VkResult result = device_.vk.vkQueueSubmit2(
       queue, static_cast<std::uint32_t>(infos_.size()), infos_.data(), VK_NULL_HANDLE);

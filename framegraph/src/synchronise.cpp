@@ -42,12 +42,7 @@ class Synchroniser {
   using Source = Workspace::Source;
 
   Synchroniser(const GraphDescription& graph, Workspace& workspace, Plan& plan)
-      : graph_(graph),
-        workspace_(workspace),
-        plan_(plan),
-        uses_(workspace.chain.uses),
-        s_(workspace.synchronise),
-        several_(workspace.several_queues) {}
+      : graph_(graph), workspace_(workspace), plan_(plan) {}
 
   void run() {
     for (auto& waits : last_waits_) std::fill(std::begin(waits), std::end(waits), kNone);
@@ -468,9 +463,9 @@ class Synchroniser {
   const GraphDescription& graph_;
   Workspace& workspace_;
   Plan& plan_;
-  std::vector<Use>& uses_;
-  Workspace::Synchronise& s_;
-  bool several_;
+  std::vector<Use>& uses_ = workspace_.chain.uses;
+  Workspace::Synchronise& s_ = workspace_.synchronise;
+  const bool several_ = workspace_.several_queues;
   std::int32_t batch_time_ = kNever;  // time of the last batch
   // The start of the current pass's submission, before which no barrier can be placed.
   std::int32_t earliest_ = kBeforeFrame;

@@ -22,10 +22,9 @@ VkResult Timestamps::begin_frame(VkCommandBuffer commands, std::uint32_t passes)
     device_.vk.vkDestroyQueryPool(device_.handles.device, pool_, device_.callbacks());
     pool_ = VK_NULL_HANDLE;
     capacity_ = 0;
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2 * passes + kSpareQueries;
+    const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                     .queryCount = 2 * passes + kSpareQueries};
     const VkResult result =
         device_.vk.vkCreateQueryPool(device_.handles.device, &info, device_.callbacks(), &pool_);
     if (result != VK_SUCCESS) return result;

@@ -3,12 +3,11 @@
 
 #include <string>
 
-#include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/verify.h"
 #include "barrier_search.h"
 #include "deferred_frame.h"
 #include "fake_handle.h"
 #include "random_graph.h"
+#include "small_frames.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -48,21 +47,15 @@ TEST(Barriers, LayersAndMipsWrittenByDifferentPassesShareOneBarrierBeforeTheirRe
         cube = graph.add_pass("face").write(cube, access::color_attachment, range);
       }
     }
-    PassBuilder reader = graph.add_pass("reader");
-    reader.read(cube, access::sampled_fragment);
-    reader.side_effect();
+    add_read(graph, cube, access::sampled_fragment);
     // This pass reads the cube in a later stage. It must not get a second barrier: the barrier
     // before the first reader is extended to this stage.
-    PassBuilder later = graph.add_pass("later");
-    later.read(cube, access::sampled_compute);
-    later.side_effect();
-    const auto plan = compile(graph.description());
-    ASSERT_TRUE(plan) << to_string(plan.error());
-    EXPECT_TRUE(verify(graph.description(), {}, *plan));
-    const PlannedPass& first = plan->passes[std::size_t{6} * mips];
+    add_read(graph, cube, access::sampled_compute);
+    const Plan plan = compile_verified(graph);
+    const PlannedPass& first = plan.passes[std::size_t{6} * mips];
     ASSERT_NE(first.batch, kNone);
-    EXPECT_EQ(plan->batches[first.batch].count, 1u);
-    EXPECT_EQ(plan->passes.back().batch, kNone);
+    EXPECT_EQ(plan.batches[first.batch].count, 1u);
+    EXPECT_EQ(plan.passes.back().batch, kNone);
   }
 }
 
@@ -78,31 +71,21 @@ TEST(Barriers, ReaderOfAMipChainWrittenByOnePassPerMipNeedsAtMostTwoBarriers) {
     down.read(chain, access::sampled_compute, Range::mip(mip - 1));
     chain = down.write(chain, access::storage_write_compute, Range::mip(mip), Contents::discard);
   }
-  PassBuilder reader = graph.add_pass("reader");
-  reader.read(chain, access::sampled_fragment);
-  reader.side_effect();
-  const auto plan = compile(graph.description());
-  ASSERT_TRUE(plan) << to_string(plan.error());
-  EXPECT_TRUE(verify(graph.description(), {}, *plan));
-  ASSERT_NE(plan->passes[5].batch, kNone);
-  EXPECT_LE(plan->batches[plan->passes[5].batch].count, 2u);
+  add_read(graph, chain, access::sampled_fragment);
+  const Plan plan = compile_verified(graph);
+  ASSERT_NE(plan.passes[5].batch, kNone);
+  EXPECT_LE(plan.batches[plan.passes[5].batch].count, 2u);
 }
 
 TEST(Barriers, ReadAfterReadNeedsNoBarrier) {
   Graph graph;
-  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  texture =
-      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
-  for (int i = 0; i < 5; ++i) {
-    PassBuilder reader = graph.add_pass("reader");
-    reader.read(texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
-    reader.side_effect();
-  }
-  const auto plan = compile(graph.description());
-  ASSERT_TRUE(plan);
+  const Texture texture = add_write(graph, graph.create_texture("t", kSmall));
+  for (int i = 0; i < 5; ++i)
+    add_read(graph, texture, i % 2 ? access::sampled_fragment : access::sampled_compute);
+  const Plan plan = compile_verified(graph);
   // One transition is for the first use, and one for all readers in both stages.
-  EXPECT_EQ(plan->transitions.size(), 2u);
-  EXPECT_EQ(plan->transitions[1].dst_stages,
+  ASSERT_EQ(plan.transitions.size(), 2u);
+  EXPECT_EQ(plan.transitions[1].dst_stages,
             VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT);
 }
 
@@ -114,12 +97,7 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   Buffer other = graph.create_buffer("other", {64});
   data =
       graph.add_pass("writer").write(data, buffer_access::storage_write_compute, Contents::discard);
-  const auto add_reader = [&](const Access& access) {
-    PassBuilder reader = graph.add_pass("reader");
-    reader.read(data, access);
-    reader.side_effect();
-  };
-  add_reader(buffer_access::uniform(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
+  add_read(graph, data, buffer_access::uniform(VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT));
   // The barrier before this pass comes between the write and the second reader. The second reader's
   // dependency is added to it.
   other = graph.add_pass("fill").write(other, buffer_access::fill, Contents::discard);
@@ -127,13 +105,9 @@ TEST(Barriers, WriteVisibleToOneAccessTypeNeedsABarrierBeforeAnotherAccessTypeOf
   mixed.read(other, buffer_access::storage_read_compute);
   mixed.read(data, buffer_access::storage_read_compute);
   mixed.side_effect();
-  add_reader(buffer_access::uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT));
-  add_reader({VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
-              VK_IMAGE_LAYOUT_UNDEFINED});
-  const auto plan = compile(graph.description());
-  ASSERT_TRUE(plan) << to_string(plan.error());
-  const auto verified = verify(graph.description(), {}, *plan);
-  EXPECT_TRUE(verified) << to_string(verified.error());
+  add_read(graph, data, buffer_access::uniform(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT));
+  add_read(graph, data, buffer_access::storage_read_fragment);
+  (void)compile_verified(graph);
 }
 
 State state_of(const Access& access) { return {access.stages, access.access, access.layout}; }
@@ -142,17 +116,10 @@ class InitialStates : public testing::Test {
  protected:
   Texture import(const State& initial_state, const State& final_state = {}) {
     return graph_.import_texture("import", {.image = fake_handle<VkImage>(),
-                                            .desc = {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)},
+                                            .desc = kSmall,
                                             .usage = ~VkImageUsageFlags{0},
                                             .initial_state = initial_state,
                                             .final_state = final_state});
-  }
-  Plan compiled() {
-    const auto plan = compile(graph_.description());
-    EXPECT_TRUE(plan) << to_string(plan.error());
-    const auto right = verify(graph_.description(), {}, *plan);
-    EXPECT_TRUE(right) << to_string(right.error());
-    return *plan;
   }
   Graph graph_;
 };
@@ -160,11 +127,8 @@ class InitialStates : public testing::Test {
 TEST_F(InitialStates, ImportVisibleToOneStageGetsABarrierOnlyIfAnotherStageReadsIt) {
   for (const Access& initial_state : {access::sampled_compute, access::sampled_fragment}) {
     graph_.reset();
-    const Texture texture = import(state_of(initial_state));
-    PassBuilder reader = graph_.add_pass("reader");
-    reader.read(texture, access::sampled_fragment);
-    reader.side_effect();
-    const Plan plan = compiled();
+    add_read(graph_, import(state_of(initial_state)), access::sampled_fragment);
+    const Plan plan = compile_verified(graph_);
     const bool same = initial_state.stages == access::sampled_fragment.stages;
     ASSERT_EQ(plan.transitions.size(), same ? 0u : 1u);
     if (same) continue;
@@ -176,15 +140,11 @@ TEST_F(InitialStates, ImportVisibleToOneStageGetsABarrierOnlyIfAnotherStageReads
 // The final state of one frame is the initial state of the next.
 TEST_F(InitialStates, ImportLeftInTheStateThatTheNextFrameNeedsGetsNoFurtherBarrier) {
   const State between = state_of(access::sampled_fragment);
-  (void)graph_.add_pass("draw").write(import({}, between), access::color_attachment, {},
-                                      Contents::discard);
-  EXPECT_EQ(compiled().transitions.size(), 2u);
+  add_write(graph_, import({}, between), access::color_attachment);
+  EXPECT_EQ(compile_verified(graph_).transitions.size(), 2u);
   graph_.reset();
-  const Texture texture = import(between);
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(texture, access::sampled_fragment);
-  reader.side_effect();
-  EXPECT_EQ(compiled().transitions.size(), 0u);
+  add_read(graph_, import(between), access::sampled_fragment);
+  EXPECT_EQ(compile_verified(graph_).transitions.size(), 0u);
 }
 
 TEST_F(InitialStates, ImportThatNoPassUsesGetsABarrierFromItsInitialToItsFinalState) {
@@ -192,7 +152,7 @@ TEST_F(InitialStates, ImportThatNoPassUsesGetsABarrierFromItsInitialToItsFinalSt
                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   import(written, state_of(access::sampled_fragment));
-  const Plan plan = compiled();
+  const Plan plan = compile_verified(graph_);
   ASSERT_EQ(plan.transitions.size(), 1u);
   EXPECT_EQ(plan.transitions[0].src_access, written.access);
   EXPECT_EQ(plan.transitions[0].dst_stages, access::sampled_fragment.stages);
@@ -202,21 +162,14 @@ TEST_F(InitialStates,
        HistoryVisibleToComputeGetsABarrierBeforeAFragmentShaderReadsItInTheNextFrame) {
   const auto declare = [&](const Access& own, const Access& old) {
     graph_.reset();
-    const TextureHistory history =
-        graph_.create_texture_history("history", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-    PassBuilder reader = graph_.add_pass("reads the last frame's");
-    reader.read(history.previous(), old);
-    reader.side_effect();
-    const Texture current = graph_.add_pass("writer").write(
-        history.current, access::storage_write_compute, {}, Contents::discard);
-    PassBuilder user = graph_.add_pass("reads its own");
-    user.read(current, own);
-    user.side_effect();
+    const TextureHistory history = graph_.create_texture_history("history", kSmall);
+    add_read(graph_, history.previous(), old);
+    add_read(graph_, add_write(graph_, history.current), own);
   };
   declare(access::sampled_compute, access::sampled_fragment);
-  graph_.leave_histories(compiled().finals);
+  graph_.leave_histories(compile_verified(graph_).finals);
   declare(access::sampled_compute, access::sampled_fragment);
-  const Plan plan = compiled();
+  const Plan plan = compile_verified(graph_);
   const PlannedPass& first = plan.passes[0];
   ASSERT_NE(first.batch, kNone) << "the last write was visible to compute shaders only";
   const Transition& seen = plan.transitions[plan.batches[first.batch].first];
@@ -235,23 +188,17 @@ TEST_F(InitialStates, HistoryWithOnlyOneMipWrittenIsReportedAsPartlyWrittenInThe
     return history.validity;
   };
   declare(Range::mip(0));
-  graph_.leave_histories(compiled().finals);
+  graph_.leave_histories(compile_verified(graph_).finals);
   EXPECT_EQ(declare({}), HistoryValidity::written_in_part);
-  graph_.leave_histories(compiled().finals);
+  graph_.leave_histories(compile_verified(graph_).finals);
   EXPECT_EQ(declare({}), HistoryValidity::valid);
 }
 
 TEST(Barriers, AllMipsAndLayersWrittenByOnePassShareOneBarrierBeforeTheirReader) {
   Graph graph;
-  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3});
-  texture =
-      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
-  PassBuilder reader = graph.add_pass("reader");
-  reader.read(texture, access::sampled_compute);
-  reader.side_effect();
-  const auto plan = compile(graph.description());
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->transitions.size(), 2u);
+  const TextureDesc desc{VK_FORMAT_R8_UNORM, Extent::absolute(64, 64), 5, 3};
+  add_read(graph, add_write(graph, graph.create_texture("t", desc)), access::sampled_compute);
+  EXPECT_EQ(compile_verified(graph).transitions.size(), 2u);
 }
 
 TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands) {
@@ -266,19 +213,13 @@ TEST(Barriers, PlanOfADeferredRenderingFrameHasTheFewestPossibleBarrierCommands)
 // write, because the reads may have been of another part.
 TEST(Barriers, WriteAfterReadsNeedsNothingMadeAvailable) {
   Graph graph;
-  Texture texture = graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)});
-  texture =
-      graph.add_pass("writer").write(texture, access::storage_write_compute, {}, Contents::discard);
-  PassBuilder reader = graph.add_pass("reader");
-  reader.read(texture, access::storage_read_compute);
-  reader.side_effect();
-  texture = graph.add_pass("updater").write(texture, access::storage_read_write_compute);
-  graph.output(texture);
-  const auto plan = compile(graph.description());
-  ASSERT_TRUE(plan);
-  ASSERT_EQ(plan->transitions.size(), 3u);
-  EXPECT_EQ(plan->transitions[2].src_access, VK_ACCESS_2_NONE);
-  EXPECT_EQ(plan->transitions[2].dst_access, access::storage_read_write_compute.access);
+  const Texture texture = add_write(graph, graph.create_texture("t", kSmall));
+  add_read(graph, texture, access::storage_read_compute);
+  graph.output(graph.add_pass("updater").write(texture, access::storage_read_write_compute));
+  const Plan plan = compile_verified(graph);
+  ASSERT_EQ(plan.transitions.size(), 3u);
+  EXPECT_EQ(plan.transitions[2].src_access, VK_ACCESS_2_NONE);
+  EXPECT_EQ(plan.transitions[2].dst_access, access::storage_read_write_compute.access);
 }
 
 // A final state that writes follows a read of the frame; and the reads of an import that no pass
@@ -287,14 +228,11 @@ TEST_F(InitialStates, FinalStateThatWritesOrHasFewerStagesIsVerified) {
   const State read = state_of(access::sampled_fragment);
   State written = read;
   written.access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  const Texture texture = import(read, written);
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(texture, access::sampled_fragment);
-  reader.side_effect();
-  (void)compiled();
+  add_read(graph_, import(read, written), access::sampled_fragment);
+  (void)compile_verified(graph_);
   graph_.reset();
   import({VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT, read.layout}, read);
-  (void)compiled();
+  (void)compile_verified(graph_);
 }
 
 // 2,048 layers with 12 mips each, which all change their layouts.
@@ -302,12 +240,9 @@ TEST(Barriers, ManySubresourcesWithDifferentStatesShareFewBarriers) {
   Graph graph;
   Texture texture =
       graph.create_texture("t", {VK_FORMAT_R8_UNORM, Extent::absolute(2048, 2048), 12, 2048});
-  texture =
-      graph.add_pass("even").write(texture, access::storage_write_compute, {}, Contents::discard);
+  texture = add_write(graph, texture);
   texture = graph.add_pass("odd").write(texture, access::clear, Range::mip(1));
-  PassBuilder reader = graph.add_pass("reader");
-  reader.read(texture, access::sampled_compute);
-  reader.side_effect();
+  add_read(graph, texture, access::sampled_compute);
   const auto plan = compile(graph.description());
   ASSERT_TRUE(plan) << to_string(plan.error());
   EXPECT_LE(plan->transitions.size(), 2u + 3u * 2048u);

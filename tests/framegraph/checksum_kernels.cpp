@@ -9,11 +9,10 @@ ChecksumKernels::ChecksumKernels(Gpu& gpu) : device_(gpu.device().device()) {
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 4096},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 8192},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8192}};
-  VkDescriptorPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = 4096;
-  info.poolSizeCount = 3;
-  info.pPoolSizes = sizes;
+  const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                        .maxSets = 4096,
+                                        .poolSizeCount = 3,
+                                        .pPoolSizes = sizes};
   vkCreateDescriptorPool(device_, &info, nullptr, &pool_);
   texture_ = make(kChecksumTexture, sizeof kChecksumTexture, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
   buffer_ = make(kChecksumBuffer, sizeof kChecksumBuffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
@@ -31,39 +30,34 @@ ChecksumKernels::Kernel ChecksumKernels::make(const std::uint32_t* code, std::si
                                               VkDescriptorType written) {
   Kernel kernel;
   kernel.written = written;
-  VkDescriptorSetLayoutBinding bindings[kBindings] = {};
-  for (std::uint32_t i = 0; i < kBindings; ++i) {
-    bindings[i].binding = i;
-    bindings[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : written;
-    bindings[i].descriptorCount = 1;
-    bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-  }
-  VkDescriptorSetLayoutCreateInfo set_info{};
-  set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set_info.bindingCount = kBindings;
-  set_info.pBindings = bindings;
+  VkDescriptorSetLayoutBinding bindings[kBindings];
+  for (std::uint32_t i = 0; i < kBindings; ++i)
+    bindings[i] = {i, i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : written, 1,
+                   VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  const VkDescriptorSetLayoutCreateInfo set_info{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .bindingCount = kBindings,
+      .pBindings = bindings};
   vkCreateDescriptorSetLayout(device_, &set_info, nullptr, &kernel.set_layout);
   const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, 8};
-  VkPipelineLayoutCreateInfo layout_info{};
-  layout_info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  layout_info.setLayoutCount = 1;
-  layout_info.pSetLayouts = &kernel.set_layout;
-  layout_info.pushConstantRangeCount = 1;
-  layout_info.pPushConstantRanges = &push;
+  const VkPipelineLayoutCreateInfo layout_info{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+      .setLayoutCount = 1,
+      .pSetLayouts = &kernel.set_layout,
+      .pushConstantRangeCount = 1,
+      .pPushConstantRanges = &push};
   vkCreatePipelineLayout(device_, &layout_info, nullptr, &kernel.layout);
-  VkShaderModuleCreateInfo module_info{};
-  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  module_info.codeSize = size;
-  module_info.pCode = code;
+  const VkShaderModuleCreateInfo module_info{
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
   VkShaderModule module = VK_NULL_HANDLE;
   vkCreateShaderModule(device_, &module_info, nullptr, &module);
-  VkComputePipelineCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  info.stage.module = module;
-  info.stage.pName = "main";
-  info.layout = kernel.layout;
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                .module = module,
+                .pName = "main"},
+      .layout = kernel.layout};
   vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &kernel.pipeline);
   vkDestroyShaderModule(device_, module, nullptr);
   return kernel;
@@ -77,11 +71,10 @@ void ChecksumKernels::destroy(Kernel& kernel) {
 
 void ChecksumKernels::run(RecordContext& context, const Kernel& kernel, const Resource* resources,
                           VkExtent2D groups, std::uint32_t seed, bool keep) {
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  info.descriptorPool = pool_;
-  info.descriptorSetCount = 1;
-  info.pSetLayouts = &kernel.set_layout;
+  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                         .descriptorPool = pool_,
+                                         .descriptorSetCount = 1,
+                                         .pSetLayouts = &kernel.set_layout};
   VkDescriptorSet set = VK_NULL_HANDLE;
   vkAllocateDescriptorSets(device_, &info, &set);
   VkWriteDescriptorSet writes[kBindings] = {};

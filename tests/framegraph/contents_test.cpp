@@ -244,14 +244,7 @@ class FrameMaker {
     pass.record([=, this, from = sampled.handle, and_from = storage.handle, old = updated.handle,
                  to = model.handle](RecordContext& c) {
       kernels_.mix_texture(c, c.view(from), c.view(old), c.view(to), c.extent(to), seed, false);
-      VkMemoryBarrier2 barrier{};
-      barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-      barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-      VkDependencyInfo info{};
-      info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-      info.memoryBarrierCount = 1;
-      info.pMemoryBarriers = &barrier;
-      vkCmdPipelineBarrier2(c.commands, &info);
+      order(c, access::storage_read_write_compute);
       kernels_.mix_texture(c, c.view(from), c.view(and_from), c.view(old), c.extent(old), ~seed,
                            true);
     });
@@ -382,7 +375,7 @@ void expect_contents(std::uint32_t queues, std::uint64_t seed) {
       const auto report = executor->submit(graph);
       ASSERT_TRUE(report) << to_string(report.error());
       ASSERT_TRUE(executor->wait());
-      ASSERT_EQ(std::memcmp(host.mapped, maker.expected.data(), 4 * maker.expected.size()), 0);
+      ASSERT_EQ(std::memcmp(host.words, maker.expected.data(), 4 * maker.expected.size()), 0);
       maker.finish();
       if (queues == 1) {
         ASSERT_EQ(messages(gpu, queues), "") << print_text(graph.description(), *report->plan);

@@ -1,13 +1,10 @@
 // Tests of culling: passes that nobody needs are removed, and every pass has a reason.
 #include <gtest/gtest.h>
 
-#include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/verify.h"
+#include "small_frames.h"
 
 namespace alcove::framegraph {
 namespace {
-
-const TextureDesc kDesc{VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(8, 8)};
 
 class Cull : public testing::Test {
  protected:
@@ -21,17 +18,13 @@ class Cull : public testing::Test {
   }
   // Returns a history that an earlier frame has written.
   TextureHistory make_history() {
-    (void)write("first", graph_.create_texture_history("h", kDesc).current, Contents::discard);
+    (void)write("first", graph_.create_texture_history("h", kSmall).current, Contents::discard);
     graph_.leave_histories(plan().finals);
     graph_.reset();
-    return graph_.create_texture_history("h", kDesc);
+    return graph_.create_texture_history("h", kSmall);
   }
-  Texture make(const char* name) { return write(name, graph_.create_texture(name, kDesc)); }
-  Plan plan() {
-    auto compiled = compile(graph_.description());
-    EXPECT_TRUE(compiled) << to_string(compiled.error());
-    return std::move(*compiled);
-  }
+  Texture make(const char* name) { return write(name, graph_.create_texture(name, kSmall)); }
+  Plan plan() const { return compile_verified(graph_); }
   Graph graph_;
 };
 
@@ -48,7 +41,7 @@ TEST_F(Cull, PassWhoseOutputNobodyReadsIsCulledTogetherWithItsTexture) {
 
 TEST_F(Cull, PlanNamesThePassThatReadsTheOutputOfAKeptPass) {
   const Texture first = make("first");
-  const Texture second = write_from("reader", first, graph_.create_texture("second", kDesc));
+  const Texture second = write_from("reader", first, graph_.create_texture("second", kSmall));
   graph_.output(second);
   const Plan result = plan();
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::feeds_pass);
@@ -74,16 +67,14 @@ TEST_F(Cull, PassWhoseOutputTheNextPassDiscardsIsCulled) {
 }
 
 TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
-  TextureDesc desc = kDesc;
+  TextureDesc desc = kSmall;
   desc.mips = 3;
   Texture texture = graph_.create_texture("t", desc);
   for (std::uint32_t mip = 0; mip < 3; ++mip) {
     texture = graph_.add_pass("mip").write(texture, access::storage_write_compute, Range::mip(mip),
                                            Contents::discard);
   }
-  PassBuilder reader = graph_.add_pass("reader");
-  reader.read(texture, access::sampled_compute, Range::mip(1));
-  reader.side_effect();
+  add_read(graph_, texture, access::sampled_compute, QueueClass::graphics, Range::mip(1));
   const Plan result = plan();
   EXPECT_EQ(result.cull_reasons[0].cull_reason, CullReason::unread);
   EXPECT_EQ(result.cull_reasons[1].cull_reason, CullReason::feeds_pass);
@@ -93,7 +84,7 @@ TEST_F(Cull, PassThatWritesAMipIsCulledUnlessThatMipIsRead) {
 TEST_F(Cull, PassThatWritesAHistoryIsKeptOnlyIfAKeptPassReadsThatHistory) {
   const TextureHistory history = make_history();
   const Texture result =
-      write_from("accumulate", history.previous(), graph_.create_texture("result", kDesc));
+      write_from("accumulate", history.previous(), graph_.create_texture("result", kSmall));
   (void)write("remember", history.current);
   // Nobody needs the result. The pass that reads the history and the pass that writes it need only
   // each other, so that both are culled.
@@ -112,7 +103,7 @@ TEST_F(Cull, HistoryThatIsReadOnlyIfItIsValidIsWrittenInTheFirstFrame) {
     graph_.reset_histories();
     for (int frame = 0; frame < 3; ++frame) {
       graph_.reset();
-      const TextureHistory history = graph_.create_texture_history("h", kDesc);
+      const TextureHistory history = graph_.create_texture_history("h", kSmall);
       const bool is_valid = history.validity == HistoryValidity::valid;
       EXPECT_EQ(is_valid, frame != 0);
       PassBuilder reader = graph_.add_pass("reader");
@@ -132,7 +123,7 @@ TEST_F(Cull, PassThatUpdatesAHistoryInPlaceIsKeptOnlyIfAKeptPassReadsThatHistory
   const TextureHistory history = make_history();
   (void)write("remember", history.current);
   const Texture result =
-      write_from("look", history.previous(), graph_.create_texture("result", kDesc));
+      write_from("look", history.previous(), graph_.create_texture("result", kSmall));
   (void)graph_.add_pass("update").write(history.previous(), access::storage_read_write_compute);
   EXPECT_EQ(plan().passes.size(), 0u);
   graph_.output(result);
@@ -150,11 +141,11 @@ class CullReadModifyWrite : public Cull {
  protected:
   // Returns the plan of the frame above. The arguments are the accesses of the two passes to `acc`.
   Plan plan_of_update(const Access& clear, const Access& update) {
-    TextureDesc desc = kDesc;
+    TextureDesc desc = kSmall;
     if (update.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT)
       desc.format = VK_FORMAT_D32_SFLOAT;
     Texture acc = graph_.create_texture("acc", desc);
-    Texture second = graph_.create_texture("second", kDesc);
+    Texture second = graph_.create_texture("second", kSmall);
     acc = graph_.add_pass("clear").write(acc, clear, {}, Contents::discard);
     PassBuilder both = graph_.add_pass("update");
     (void)both.write(acc, update);
@@ -184,7 +175,7 @@ TEST_F(CullReadModifyWrite, PassIsCulledIfItsTextureIsOnlyWrittenAgainWithoutBei
 }
 
 TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyWritesInput) {
-  Plan result = plan_of_update(access::clear, access::storage_read_write_compute);
+  (void)plan_of_update(access::clear, access::storage_read_write_compute);
   // `wrong` is the plan of the same frame, except that its update does not read `acc`. The pass
   // that clears `acc` is therefore culled in that plan.
   const GraphDescription& description = graph_.description();
@@ -194,7 +185,6 @@ TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyW
   ASSERT_TRUE(wrong);
   ASSERT_EQ(wrong->passes.size(), 1u);
   EXPECT_TRUE(verify(not_reading, {}, *wrong));
-  EXPECT_TRUE(verify(description, {}, result));
   const auto verified = verify(description, {}, *wrong);
   ASSERT_FALSE(verified);
   EXPECT_NE(
@@ -205,15 +195,13 @@ TEST_F(CullReadModifyWrite, VerifierRefusesAPlanThatLacksTheWriterOfAReadModifyW
 // A history keeps its contents for the next frame. They are needed if a pass that runs writes any
 // part of them, even if no pass of this frame reads them.
 TEST_F(Cull, AllWritersOfAHistoryAreKeptIfOneOfThemRuns) {
-  const TextureHistory history = graph_.create_texture_history("history", kDesc);
+  const TextureHistory history = graph_.create_texture_history("history", kSmall);
   const Texture filled = write("fill", history.current, Contents::discard);
   PassBuilder update = graph_.add_pass("update");
   const Texture updated = update.write(filled, access::storage_write_compute);
   update.side_effect();
   (void)write("finish", updated, Contents::keep);
-  const Plan result = plan();
-  EXPECT_EQ(result.passes.size(), 3u);
-  EXPECT_TRUE(verify(graph_.description(), {}, result));
+  EXPECT_EQ(plan().passes.size(), 3u);
 }
 
 }  // namespace

@@ -98,15 +98,14 @@ class DeferredFrame {
   }
 
   void present(Texture from) {
-    ImportedTexture import;
-    import.image = fake_handle<VkImage>();
-    import.desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(width_, height_)};
-    import.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    import.final_state = access::present;
-    Texture back_buffer = graph_.import_texture("back buffer", import);
+    const Texture back_buffer = graph_.import_texture(
+        "back buffer", {.image = fake_handle<VkImage>(),
+                        .desc = {VK_FORMAT_R8G8B8A8_UNORM, Extent::absolute(width_, height_)},
+                        .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                        .final_state = access::present});
     PassBuilder pass = graph_.add_pass("present");
     pass.read(from, access::transfer_source);
-    back_buffer = pass.write(back_buffer, access::transfer_destination, {}, Contents::discard);
+    (void)pass.write(back_buffer, access::transfer_destination, {}, Contents::discard);
     pass.record([](RecordContext&) {});
   }
 

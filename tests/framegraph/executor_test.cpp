@@ -46,11 +46,11 @@ TEST_F(ExecutorTest, FrameWhoseCallbackFailsIsNotSubmitted) {
   };
   EXPECT_EQ(run(7, 1), HistoryValidity::first_frame);
   EXPECT_EQ(run(7, 2), HistoryValidity::first_frame);
-  EXPECT_EQ(*static_cast<const std::uint32_t*>(host.mapped), 0u);
+  EXPECT_EQ(host.words[0], 0u);
   EXPECT_EQ(run(8, 0), HistoryValidity::first_frame);
   EXPECT_EQ(run(9, 1), HistoryValidity::valid);
   EXPECT_EQ(run(9, 2), HistoryValidity::valid);
-  EXPECT_EQ(*static_cast<const std::uint32_t*>(host.mapped), 8u);
+  EXPECT_EQ(host.words[0], 8u);
 }
 
 // Counts, over the last 100 of 300 frames, the frames in which the executor recorded a barrier over
@@ -285,13 +285,10 @@ PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr_1_2(VkInstance instance, co
 }
 
 TEST_F(ExecutorTest, ExecutorRunsOnAVulkan12DeviceWithTheSynchronization2Extension) {
-  VkPhysicalDeviceSynchronization2Features synchronization{};
-  synchronization.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES;
-  synchronization.synchronization2 = VK_TRUE;
-  VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
-  timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
-  timeline.pNext = &synchronization;
-  timeline.timelineSemaphore = VK_TRUE;
+  VkPhysicalDeviceSynchronization2Features synchronization{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES, nullptr, VK_TRUE};
+  const VkPhysicalDeviceTimelineSemaphoreFeatures timeline{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, &synchronization, VK_TRUE};
   const ExtraDevice device(gpu_, &timeline, {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME});
   DeviceHandles old = device.handles();
   old.get_instance_proc_addr = get_instance_proc_addr_1_2;
@@ -352,12 +349,9 @@ TEST_F(ExecutorTest, RenderingWithAViewMaskIsAcceptedOnADeviceWithMultiview) {
 // The two frames declare a buffer without a device address and one with an address in the same
 // heap.
 TEST_F(ExecutorTest, BuffersUsedByDeviceAddressGetMemoryThatAllowsDeviceAddresses) {
-  VkPhysicalDeviceVulkan12Features v12{};
-  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
   v12.bufferDeviceAddress = v12.timelineSemaphore = VK_TRUE;
-  VkPhysicalDeviceVulkan13Features v13{};
-  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  v13.pNext = &v12;
+  VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &v12};
   v13.synchronization2 = VK_TRUE;
   const ExtraDevice device(gpu_, &v13);
   Executor executor = make(device.handles());

@@ -1,8 +1,6 @@
 // Tests consecutive frames between which the CPU does not wait for the GPU.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "executor_fixture.h"
 
 namespace alcove::framegraph {
@@ -10,50 +8,23 @@ namespace {
 
 class FramesInFlight : public ExecutorTest {
  protected:
-  static constexpr std::uint32_t kSlots = 4;
-
-  void SetUp() override {
-    ExecutorTest::SetUp();
-    const VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
-                                       VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                       gpu_.device().queue_family()};
-    vkCreateCommandPool(gpu_.device().device(), &pool, nullptr, &pool_);
-    const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
-                                           pool_, VK_COMMAND_BUFFER_LEVEL_PRIMARY, kSlots};
-    vkAllocateCommandBuffers(gpu_.device().device(), &info, commands_.data());
-  }
   void TearDown() override {
     wait();
-    vkDestroyCommandPool(gpu_.device().device(), pool_, nullptr);
     ExecutorTest::TearDown();
   }
 
   Executor make() const {
-    return ExecutorTest::make(handles(), {.frames_in_flight = kSlots, .timestamps = false});
-  }
-  tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph, std::uint32_t slot) {
-    const VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
-                                        VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
-    vkBeginCommandBuffer(commands_.at(slot), &info);
-    auto report = executor.record(graph, commands_.at(slot), {slot});
-    vkEndCommandBuffer(commands_.at(slot));
-    return report;
+    return ExecutorTest::make(handles(), {.frames_in_flight = Gpu::kSlots, .timestamps = false});
   }
   // Records and submits a frame. The slot's previous frame must have finished; this frame may still
   // be running when the function returns.
   void run(Executor& executor, Graph& graph, std::uint32_t slot) {
-    const auto report = record(executor, graph, slot);
+    const auto report = gpu_.record(executor, graph, slot);
     ASSERT_TRUE(report) << to_string(report.error());
-    VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands_.at(slot);
-    vkQueueSubmit(gpu_.device().queue(), 1, &submit, VK_NULL_HANDLE);
+    gpu_.submit(slot);
   }
 
   void wait() { vkDeviceWaitIdle(gpu_.device().device()); }
-
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::array<VkCommandBuffer, kSlots> commands_{};
 };
 
 // Returns an import of the buffer whose last use was a copy by the previous frame.
@@ -78,7 +49,7 @@ TEST_F(FramesInFlight, FramesOfAlternatingPlansAreOrderedOnTheDeviceWithoutAWait
   Executor executor = make();
   const HostBuffer host = gpu_.make_host_buffer(4);
   Graph graph;
-  for (std::uint32_t frame = 0; frame < kSlots; ++frame) {
+  for (std::uint32_t frame = 0; frame < Gpu::kSlots; ++frame) {
     const bool written_last = frame % 2 == 0;
     graph.reset();
     Buffer out = graph.import_buffer("out", arriving(host));
@@ -104,7 +75,7 @@ TEST_F(FramesInFlight, BarrierToTheFinalStateOfAnImportWaitsForTheReadsOfTheFram
       VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   const VkImage image = gpu_.make_image(desc, kUsage);
   Graph graph;
-  for (std::uint32_t frame = 0; frame < kSlots; ++frame) {
+  for (std::uint32_t frame = 0; frame < Gpu::kSlots; ++frame) {
     graph.reset();
     Buffer out = graph.import_buffer("out", arriving(host));
     Texture texture = graph.import_texture(
@@ -134,7 +105,7 @@ TEST_F(FramesInFlight, RefusedOrDiscardedFrameFreesNoMemoryThatEarlierFramesMayS
   for (const bool refused : {true, false, true}) {
     // The frame of slot 0 has finished. The frame of slot 1 may still be running.
     declare(graph, refused ? 0 : 64);
-    EXPECT_EQ(record(executor, graph, 0).has_value(), !refused);
+    EXPECT_EQ(gpu_.record(executor, graph, 0).has_value(), !refused);
     if (!refused) executor.discard(graph, {0});
     EXPECT_EQ(failing::alive(), alive);
   }

@@ -24,7 +24,7 @@ namespace alcove::framegraph {
 struct HostBuffer {
   VkBuffer buffer = VK_NULL_HANDLE;
   VkDeviceSize size = 0;
-  void* mapped = nullptr;
+  const std::uint32_t* words = nullptr;
 };
 
 // Records a clear of an image with one 32-bit channel.
@@ -45,6 +45,18 @@ inline void copy_image(RecordContext& context, VkImage image, VkBuffer buffer,
   const VkBufferImageCopy copy{offset, 0, 0, layers, {}, extent};
   vkCmdCopyImageToBuffer(context.commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
                          &copy);
+}
+
+// Records a barrier between two commands of a pass that have this access.
+inline void order(RecordContext& context, const Access& access) {
+  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  barrier.srcStageMask = barrier.dstStageMask = access.stages;
+  barrier.srcAccessMask = access.access & kWriteBits;
+  barrier.dstAccessMask = access.access;
+  const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                              .memoryBarrierCount = 1,
+                              .pMemoryBarriers = &barrier};
+  vkCmdPipelineBarrier2(context.commands, &info);
 }
 
 // Adds a pass that clears a texture with one 32-bit channel. Returns the cleared texture.
@@ -69,6 +81,8 @@ inline Buffer add_copy(Graph& graph, Texture texture, Buffer out, VkDeviceSize o
 
 class Gpu {
  public:
+  static constexpr std::uint32_t kSlots = 4;  // frame slots, each with a command buffer
+
   // Without validation it serves tests that count calls of the executor.
   explicit Gpu(bool validation = true) {
     sample::DeviceOptions options;
@@ -84,8 +98,8 @@ class Gpu {
                                  device_->queue_family()};
     vkCreateCommandPool(device_->device(), &pool, nullptr, &pool_);
     VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
-                                     VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-    vkAllocateCommandBuffers(device_->device(), &info, &commands_);
+                                     VK_COMMAND_BUFFER_LEVEL_PRIMARY, kSlots};
+    vkAllocateCommandBuffers(device_->device(), &info, commands_);
   }
   ~Gpu() {
     if (!device_) return;
@@ -115,7 +129,7 @@ class Gpu {
     const std::span<std::byte> bytes = (*made)->bytes();
     std::fill(bytes.begin(), bytes.end(), std::byte{});
     buffers_.push_back(std::move(*made));
-    return {buffers_.back()->buffer(), size, bytes.data()};
+    return {buffers_.back()->buffer(), size, reinterpret_cast<const std::uint32_t*>(bytes.data())};
   }
   VkImage make_image(const TextureDesc& desc, VkImageUsageFlags usage) {
     auto made = sample::GpuImage::create(*device_, desc, usage);
@@ -125,21 +139,21 @@ class Gpu {
   }
   // Changes the layout of an image from UNDEFINED in a submission of its own.
   void change_layout(VkImage image, VkImageLayout layout) {
-    VkImageMemoryBarrier2 barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT;
-    barrier.newLayout = layout;
-    barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                                VK_REMAINING_ARRAY_LAYERS};
-    VkDependencyInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    info.imageMemoryBarrierCount = 1;
-    info.pImageMemoryBarriers = &barrier;
+    const VkImageMemoryBarrier2 barrier{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT,
+        .newLayout = layout,
+        .image = image,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS}};
+    const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                .imageMemoryBarrierCount = 1,
+                                .pImageMemoryBarriers = &barrier};
     begin();
-    vkCmdPipelineBarrier2(commands_, &info);
-    end_and_wait();
+    vkCmdPipelineBarrier2(commands(), &info);
+    end();
+    submit_and_wait();
   }
 
   static ImportedBuffer imported(const HostBuffer& host) {
@@ -154,37 +168,34 @@ class Gpu {
 
   // Records one frame, runs it and waits for it. On an error, the commands are discarded.
   tl::expected<FrameReport, Errors> run(Executor& executor, Graph& graph) {
-    begin();
-    auto report = executor.record(graph, commands_);
-    if (report)
-      end_and_wait();
-    else
-      throw_away();
+    auto report = record(executor, graph);
+    if (report) submit_and_wait();
     return report;
   }
-  // Records one frame and discards its commands.
-  tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph) {
-    begin();
-    auto report = executor.record(graph, commands_);
-    throw_away();
+  // Records one frame with the commands of a slot, and does not submit them.
+  tl::expected<FrameReport, Errors> record(Executor& executor, Graph& graph,
+                                           std::uint32_t slot = 0) {
+    begin(slot);
+    auto report = executor.record(graph, commands_[slot], {slot});
+    end(slot);
     return report;
   }
 
-  VkCommandBuffer commands() const { return commands_; }
-  void begin() {
+  VkCommandBuffer commands() const { return commands_[0]; }
+  void begin(std::uint32_t slot = 0) {
     VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                   VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
-    vkBeginCommandBuffer(commands_, &info);
+    vkBeginCommandBuffer(commands_[slot], &info);
   }
-  // Ends the commands without running them.
-  void throw_away() { vkEndCommandBuffer(commands_); }
-  void end_and_wait() {
-    vkEndCommandBuffer(commands_);
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands_;
-    vkQueueSubmit(device_->queue(), 1, &submit, VK_NULL_HANDLE);
+  void end(std::uint32_t slot = 0) { vkEndCommandBuffer(commands_[slot]); }
+  void submit(std::uint32_t slot = 0) {
+    const VkSubmitInfo info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                            .commandBufferCount = 1,
+                            .pCommandBuffers = &commands_[slot]};
+    vkQueueSubmit(device_->queue(), 1, &info, VK_NULL_HANDLE);
+  }
+  void submit_and_wait() {
+    submit();
     vkQueueWaitIdle(device_->queue());
   }
 
@@ -204,7 +215,7 @@ class Gpu {
  private:
   std::unique_ptr<sample::VulkanDevice> device_;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  VkCommandBuffer commands_[kSlots] = {};
   std::vector<std::unique_ptr<sample::GpuImage>> images_;
   std::vector<std::unique_ptr<sample::HostBuffer>> buffers_;
   std::string problem_;

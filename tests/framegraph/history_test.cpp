@@ -77,9 +77,7 @@ class GraphHistory : public ExecutorTest {
     return out;
   }
 
-  std::uint32_t slot(std::uint32_t age) const {
-    return static_cast<const std::uint32_t*>(host_.mapped)[age];
-  }
+  std::uint32_t slot(std::uint32_t age) const { return host_.words[age]; }
   std::array<std::uint32_t, kSlots - 1> slots() const { return {slot(1), slot(2)}; }
 
   std::unique_ptr<Executor> executor_;

@@ -28,41 +28,45 @@ class Mutator {
     for (std::uint32_t i = 0; i < plan_.submissions.size(); ++i) drop_waits(i);
     for (std::uint32_t i = 0; i < plan_.finals.size(); ++i) misstate_history(i);
     for (std::uint32_t i = 0; i < plan_.contents.size(); ++i) misstate_contents(i);
-    for (const PlannedPass& planned : plan_.passes) {
-      Plan mutant = plan_;
-      mutant.cull_reasons[planned.pass].cull_reason = CullReason::unread;
-      visit_("call a live pass unread", mutant);
-    }
+    for (const PlannedPass& planned : plan_.passes)
+      visit("call a live pass unread", [&](Plan& mutant) {
+        mutant.cull_reasons[planned.pass].cull_reason = CullReason::unread;
+      });
     for (std::uint32_t i = 0; i < plan_.heaps.size(); ++i) {
-      Plan mutant = plan_;
-      mutant.heaps[i].memory_types = 0;
-      visit_("allow no memory type", mutant);
-      mutant = plan_;
-      ++mutant.heaps[i].lower_bound;
-      visit_("misstate the lower bound", mutant);
+      visit("allow no memory type", [=](Plan& mutant) { mutant.heaps[i].memory_types = 0; });
+      visit("misstate the lower bound", [=](Plan& mutant) { ++mutant.heaps[i].lower_bound; });
     }
   }
 
  private:
-  void drop_transition(std::uint32_t index) {
+  template <typename Change>
+  void visit(const char* kind, const Change& change) {
     Plan mutant = plan_;
-    // Removes one transition. The others of its batch stay.
-    mutant.transitions.erase(mutant.transitions.begin() + index);
-    for (Batch& batch : mutant.batches)
+    change(mutant);
+    visit_(kind, mutant);
+  }
+
+  // Moves the batches after a transition that was inserted (1) or removed (-1). The other
+  // transitions of its own batch stay in it.
+  static void shift_batches(Plan& plan, std::uint32_t index, int by) {
+    for (Batch& batch : plan.batches)
       if (index < batch.first)
-        --batch.first;
+        batch.first += static_cast<std::uint32_t>(by);
       else if (index < batch.first + batch.count)
-        --batch.count;
-    visit_("drop a barrier", mutant);
+        batch.count += static_cast<std::uint32_t>(by);
+  }
+
+  void drop_transition(std::uint32_t index) {
+    visit("drop a barrier", [=](Plan& mutant) {
+      mutant.transitions.erase(mutant.transitions.begin() + index);
+      shift_batches(mutant, index, -1);
+    });
   }
 
   template <typename Mask>
   void narrow_mask(const char* kind, std::uint32_t index, Mask Transition::*mask) {
-    for (Mask left = plan_.transitions[index].*mask; left != 0; left &= left - 1) {
-      Plan mutant = plan_;
-      mutant.transitions[index].*mask &= ~(left & (~left + 1));
-      visit_(kind, mutant);
-    }
+    for (Mask left = plan_.transitions[index].*mask; left != 0; left &= left - 1)
+      visit(kind, [=](Plan& mutant) { mutant.transitions[index].*mask &= ~(left & (~left + 1)); });
   }
 
   void narrow(std::uint32_t index) {
@@ -75,54 +79,46 @@ class Mutator {
   void change_layouts(std::uint32_t index) {
     const Transition& t = plan_.transitions[index];
     if (t.resource == kNone || t.old_layout == t.new_layout) return;
-    Plan mutant = plan_;
-    std::swap(mutant.transitions[index].old_layout, mutant.transitions[index].new_layout);
-    visit_("swap the layouts", mutant);
-    mutant.transitions[index] = t;
-    mutant.transitions[index].new_layout = t.new_layout == VK_IMAGE_LAYOUT_GENERAL
-                                               ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
-                                               : VK_IMAGE_LAYOUT_GENERAL;
-    visit_("change to another layout", mutant);
-    if (t.range.mips > 1) {
-      mutant.transitions[index] = t;
-      --mutant.transitions[index].range.mips;
-      visit_("leave out a mip", mutant);
-    }
+    visit("swap the layouts", [=](Plan& mutant) {
+      std::swap(mutant.transitions[index].old_layout, mutant.transitions[index].new_layout);
+    });
+    visit("change to another layout", [&](Plan& mutant) {
+      mutant.transitions[index].new_layout = t.new_layout == VK_IMAGE_LAYOUT_GENERAL
+                                                 ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+                                                 : VK_IMAGE_LAYOUT_GENERAL;
+    });
+    if (t.range.mips > 1)
+      visit("leave out a mip", [=](Plan& mutant) { --mutant.transitions[index].range.mips; });
   }
 
   // Makes mutants of a barrier with an access that its stages lack, with a stage that its queue
   // lacks, and with its layout change listed twice.
   void add_bits(std::uint32_t index) {
     const Transition& t = plan_.transitions[index];
-    Plan mutant = plan_;
     const bool reads_indices = (t.dst_stages & (VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT |
                                                 VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT)) != 0;
-    mutant.transitions[index].dst_access |= VK_ACCESS_2_INDEX_READ_BIT;
-    if (!reads_indices) visit_("add an access that the stages lack", mutant);
-    mutant = plan_;
-    mutant.transitions[index].src_stages |= VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    if (!reads_indices)
+      visit("add an access that the stages lack", [=](Plan& mutant) {
+        mutant.transitions[index].dst_access |= VK_ACCESS_2_INDEX_READ_BIT;
+      });
     for (const PlannedPass& planned : plan_.passes)
       if (planned.queue != QueueClass::graphics && planned.batch != kNone &&
           index - plan_.batches[planned.batch].first < plan_.batches[planned.batch].count)
-        visit_("add a stage that the queue lacks", mutant);
+        visit("add a stage that the queue lacks", [=](Plan& mutant) {
+          mutant.transitions[index].src_stages |= VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+        });
     if (t.resource == kNone) return;
-    mutant = plan_;
-    mutant.transitions.insert(mutant.transitions.begin() + index, t);
-    for (Batch& batch : mutant.batches)
-      if (index < batch.first)
-        ++batch.first;
-      else if (index < batch.first + batch.count)
-        ++batch.count;
-    visit_("list a layout change twice", mutant);
+    visit("list a layout change twice", [&](Plan& mutant) {
+      mutant.transitions.insert(mutant.transitions.begin() + index, t);
+      shift_batches(mutant, index, 1);
+    });
   }
 
   void misstate_contents(std::uint32_t index) {
     const AccessRecord& access = graph_.accesses[index];
     if (plan_.placements[access.resource].first == kNone || !is_live(index)) return;
     const auto visit_flag = [&](std::uint8_t flag, const char* kind) {
-      Plan mutant = plan_;
-      mutant.contents[index] ^= flag;
-      visit_(kind, mutant);
+      visit(kind, [&](Plan& mutant) { mutant.contents[index] ^= flag; });
     };
     const bool draws = (access.access & (VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
                                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT)) != 0;
@@ -141,22 +137,15 @@ class Mutator {
 
   void drop_batch(std::uint32_t index) {
     if (plan_.batches[index].count < 2) return;
-    Plan mutant = plan_;
-    mutant.batches[index].count = 0;
-    visit_("drop a batch", mutant);
+    visit("drop a batch", [=](Plan& mutant) { mutant.batches[index].count = 0; });
   }
 
   void shrink_lifetime(std::uint32_t resource) {
     const Placement& placement = plan_.placements[resource];
     if (placement.heap == kNone || placement.first == placement.last) return;
-    Plan mutant = plan_;
-    if (is_used_at(resource, placement.last)) {
-      --mutant.placements[resource].last;
-      visit_("end a lifetime early", mutant);
-    }
-    mutant = plan_;
-    ++mutant.placements[resource].first;
-    visit_("begin a lifetime late", mutant);
+    if (is_used_at(resource, placement.last))
+      visit("end a lifetime early", [=](Plan& mutant) { --mutant.placements[resource].last; });
+    visit("begin a lifetime late", [=](Plan& mutant) { ++mutant.placements[resource].first; });
   }
 
   bool is_used_at(std::uint32_t resource, std::uint32_t position) const {
@@ -176,15 +165,15 @@ class Mutator {
       if (other == resource || there.heap != placement.heap || there.first > placement.last ||
           placement.first > there.last)
         continue;
-      Plan mutant = plan_;
-      mutant.placements[resource].offset = there.offset;
-      mutant.heaps[placement.heap].size *= 2;
-      visit_("shift an offset", mutant);
+      visit("shift an offset", [&](Plan& mutant) {
+        mutant.placements[resource].offset = there.offset;
+        mutant.heaps[placement.heap].size *= 2;
+      });
       break;
     }
-    Plan mutant = plan_;
-    mutant.placements[resource].offset = mutant.heaps[placement.heap].size;
-    visit_("shift an offset out of the heap", mutant);
+    visit("shift an offset out of the heap", [&](Plan& mutant) {
+      mutant.placements[resource].offset = mutant.heaps[placement.heap].size;
+    });
   }
 
   // Makes mutants that say something else about what the frame has written to a history, or
@@ -193,35 +182,30 @@ class Mutator {
     for (const WriteCoverage written :
          {WriteCoverage::nothing, WriteCoverage::part, WriteCoverage::whole}) {
       if (plan_.finals[index].written == written) continue;
-      Plan mutant = plan_;
-      mutant.finals[index].written = written;
-      visit_("misstate a history", mutant);
+      visit("misstate a history", [=](Plan& mutant) { mutant.finals[index].written = written; });
     }
-    Plan mutant = plan_;
-    mutant.finals.erase(mutant.finals.begin() + index);
-    visit_("omit the final state of a history", mutant);
+    visit("omit the final state of a history",
+          [=](Plan& mutant) { mutant.finals.erase(mutant.finals.begin() + index); });
   }
 
   void drop_waits(std::uint32_t index) {
     for (std::uint32_t queue = 0; queue < kQueueClasses; ++queue) {
       if (!(plan_.submissions[index].frame_before & (1u << queue))) continue;
-      Plan mutant = plan_;
-      mutant.submissions[index].frame_before &= static_cast<std::uint8_t>(~(1u << queue));
-      visit_("drop a wait for the frame before", mutant);
+      visit("drop a wait for the frame before", [=](Plan& mutant) {
+        mutant.submissions[index].frame_before &= static_cast<std::uint8_t>(~(1u << queue));
+      });
     }
     for (std::uint32_t w = 0; w < plan_.submissions[index].wait_count; ++w) {
-      Plan mutant = plan_;
-      const std::uint32_t at = mutant.submissions[index].first_wait + w;
-      mutant.waits.erase(mutant.waits.begin() + at);
-      --mutant.submissions[index].wait_count;
-      for (Submission& submission : mutant.submissions)
-        if (submission.first_wait > at) --submission.first_wait;
-      visit_("drop a semaphore", mutant);
-      for (VkPipelineStageFlags2 left = plan_.waits[at].stages; left != 0; left &= left - 1) {
-        mutant = plan_;
-        mutant.waits[at].stages &= ~(left & (~left + 1));
-        visit_("narrow a semaphore wait", mutant);
-      }
+      const std::uint32_t at = plan_.submissions[index].first_wait + w;
+      visit("drop a semaphore", [=](Plan& mutant) {
+        mutant.waits.erase(mutant.waits.begin() + at);
+        --mutant.submissions[index].wait_count;
+        for (Submission& submission : mutant.submissions)
+          if (submission.first_wait > at) --submission.first_wait;
+      });
+      for (VkPipelineStageFlags2 left = plan_.waits[at].stages; left != 0; left &= left - 1)
+        visit("narrow a semaphore wait",
+              [=](Plan& mutant) { mutant.waits[at].stages &= ~(left & (~left + 1)); });
     }
   }
 

@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
 #include "mutate.h"
 #include "random_graph.h"
+#include "small_frames.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -41,10 +40,8 @@ Counts mutate_graphs(std::uint64_t graphs, const RandomOptions& options, const L
     Dice dice(seed);
     declare_random(graph, dice, options);
     const GraphDescription& description = graph.description();
-    const auto plan = compile(description, limits);
-    EXPECT_TRUE(plan) << to_string(plan.error());
-    EXPECT_TRUE(verify(description, limits, *plan));
-    for_each_mutant(description, *plan, [&](const std::string& kind, const Plan& mutant) {
+    const Plan plan = compile_verified(graph, limits);
+    for_each_mutant(description, plan, [&](const std::string& kind, const Plan& mutant) {
       ++(verify(description, limits, mutant) ? counts[kind].accepted : counts[kind].killed);
     });
   }
@@ -104,33 +101,28 @@ TEST(Mutation, VerifierAcceptsAPlanOfAThousandPassesAndRefusesItIfOnePassLacksIt
     textures.push_back(pass.write(texture, access::storage_write_compute, {}, Contents::discard));
     pass.side_effect();
   }
-  auto plan = compile(graph.description());
-  ASSERT_TRUE(plan) << to_string(plan.error());
-  EXPECT_TRUE(verify(graph.description(), {}, *plan));
-  plan->batches[plan->passes[900].batch].count = 0;
-  EXPECT_FALSE(verify(graph.description(), {}, *plan));
+  Plan plan = compile_verified(graph);
+  plan.batches[plan.passes[900].batch].count = 0;
+  EXPECT_FALSE(verify(graph.description(), {}, plan));
 }
 
 // No pass of this frame names a read access. The only one is that of the final state, which stands
 // for all.
 TEST(Mutation, VerifierRefusesAWriteThatNoBarrierMakesVisibleToAFinalStateOfAllReads) {
   Graph graph;
-  ImportedBuffer import;
-  import.buffer = fake_handle<VkBuffer>(1);
-  import.desc.size = 16;
-  import.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  import.has_contents = false;
-  import.final_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
-                        VK_IMAGE_LAYOUT_UNDEFINED};
-  const Buffer buffer = graph.import_buffer("buffer", import);
+  const Buffer buffer = graph.import_buffer(
+      "buffer",
+      {.buffer = fake_handle<VkBuffer>(1),
+       .desc = {16},
+       .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+       .has_contents = false,
+       .final_state = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT}});
   (void)graph.add_pass("write").write(buffer, buffer_access::storage_write_compute,
                                       Contents::discard);
-  auto plan = compile(graph.description());
-  ASSERT_TRUE(plan) << to_string(plan.error());
-  EXPECT_TRUE(verify(graph.description(), {}, *plan));
-  ASSERT_EQ(plan->transitions.size(), 1u);
-  plan->transitions[0].dst_access = 0;
-  EXPECT_FALSE(verify(graph.description(), {}, *plan));
+  Plan plan = compile_verified(graph);
+  ASSERT_EQ(plan.transitions.size(), 1u);
+  plan.transitions[0].dst_access = 0;
+  EXPECT_FALSE(verify(graph.description(), {}, plan));
 }
 
 }  // namespace

@@ -11,13 +11,13 @@ namespace {
 
 // Declares the frame of an engine that provides depth and reads visibility and bent normals.
 void declare(Graph& graph, passes::Pipelines& pipelines, VkImage image, AlcoveQuality quality) {
-  ImportedTexture engine_depth;
-  engine_depth.image = image;
-  engine_depth.desc = {VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)};
-  engine_depth.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  engine_depth.initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                                VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+  const ImportedTexture engine_depth{
+      .image = image,
+      .desc = {VK_FORMAT_R32_SFLOAT, Extent::absolute(960, 540)},
+      .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+      .initial_state = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL}};
   AlcoveSettings settings{.struct_size = sizeof settings};
   ASSERT_EQ(alcoveGetSettings(quality, 0.5f, &settings), ALCOVE_SUCCESS);
   AlcoveViewInfo view{.settings = &settings};

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <iostream>
 
-#include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/verify.h"
 #include "deferred_frame.h"
 #include "fake_handle.h"
 #include "random_graph.h"
+#include "small_frames.h"
 
 namespace alcove::framegraph {
 namespace {
@@ -64,9 +63,8 @@ TEST(MemoryPlacement, TransientsShareNoBytesIfAliasingIsOff) {
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
   limits.alias = false;
-  const auto plan = compile(graph.description(), limits);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->heaps[0].size, plan->heaps[0].unaliased);
+  const Plan plan = compile_verified(graph, limits);
+  EXPECT_EQ(plan.heaps[0].size, plan.heaps[0].unaliased);
 }
 
 TEST(MemoryPlacement, TransientsOfDifferentMemoryTypesGetSeparateHeaps) {
@@ -79,10 +77,7 @@ TEST(MemoryPlacement, TransientsOfDifferentMemoryTypesGetSeparateHeaps) {
     needed.alignment = 65536;
     return needed;
   };
-  const auto plan = compile(graph.description(), limits);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->heaps.size(), 2u);
-  EXPECT_TRUE(verify(graph.description(), limits, *plan));
+  EXPECT_EQ(compile_verified(graph, limits).heaps.size(), 2u);
 }
 
 // A device that fails to say how much memory a resource needs, or says what cannot be.
@@ -124,19 +119,15 @@ TEST(MemoryPlacement, BuffersAndImagesArePlacedWithoutAGranularity) {
   declare_deferred_frame(graph, 640, 360);
   Limits limits;
   limits.buffer_image_granularity = 0;
-  const auto plan = compile(graph.description(), limits);
-  ASSERT_TRUE(plan) << to_string(plan.error());
-  EXPECT_TRUE(verify(graph.description(), limits, *plan));
+  (void)compile_verified(graph, limits);
 }
 
 TEST(PassOrder, VerifierRefusesPassesWithSideEffectsOutOfTheirDeclaredOrder) {
   Graph graph;
   for (const char* name : {"first", "second"}) graph.add_pass(name).side_effect();
-  auto plan = compile(graph.description());
-  ASSERT_TRUE(plan);
-  EXPECT_TRUE(verify(graph.description(), {}, *plan));
-  std::swap(plan->passes[0].pass, plan->passes[1].pass);
-  EXPECT_FALSE(verify(graph.description(), {}, *plan));
+  Plan plan = compile_verified(graph);
+  std::swap(plan.passes[0].pass, plan.passes[1].pass);
+  EXPECT_FALSE(verify(graph.description(), {}, plan));
 }
 
 }  // namespace

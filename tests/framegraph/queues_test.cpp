@@ -1,14 +1,11 @@
 // Tests that queues wait for each other only if they must.
 #include <gtest/gtest.h>
 
-#include "alcove/framegraph/compile.h"
-#include "alcove/framegraph/verify.h"
 #include "fake_handle.h"
+#include "small_frames.h"
 
 namespace alcove::framegraph {
 namespace {
-
-const TextureDesc kDesc{VK_FORMAT_R8_UNORM, Extent::absolute(8, 8)};
 
 class Queues : public testing::Test {
  protected:
@@ -16,25 +13,19 @@ class Queues : public testing::Test {
     limits_.queue_families[1] = 1;
     limits_.queue_families[2] = 2;
   }
-  Texture make(const char* name) { return graph_.create_texture(name, kDesc); }
+  Texture make(const char* name) { return graph_.create_texture(name, kSmall); }
   // Imports a texture whose final state is a read by compute shaders.
   Texture import(const char* name) {
     const State state{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
                       VK_IMAGE_LAYOUT_GENERAL};
     return graph_.import_texture(
         name, {.image = fake_handle<VkImage>(imports_++),
-               .desc = kDesc,
+               .desc = kSmall,
                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                .initial_state = state,
                .final_state = state});
   }
-  Plan compiled() {
-    const auto plan = compile(graph_.description(), limits_);
-    EXPECT_TRUE(plan) << to_string(plan.error());
-    const auto right = verify(graph_.description(), limits_, *plan);
-    EXPECT_TRUE(right) << to_string(right.error());
-    return *plan;
-  }
+  Plan compiled() const { return compile_verified(graph_, limits_); }
   Graph graph_;
   Limits limits_;
   std::size_t imports_ = 0;
@@ -83,11 +74,8 @@ TEST_F(Queues, AtTheEndOfAFrameTheGraphicsQueueWaitsOnlyForTheLastOfAChainOfQueu
 TEST_F(Queues, ComputePassesThatReadImportsOfTheGraphicsQueueShareOneSubmission) {
   const Texture x = import("x");
   const Texture y = import("y");
-  for (const Texture texture : {x, y}) {
-    PassBuilder pass = graph_.add_pass("reads", QueueClass::compute);
-    pass.read(texture, access::storage_read_compute);
-    pass.side_effect();
-  }
+  for (const Texture texture : {x, y})
+    add_read(graph_, texture, access::storage_read_compute, QueueClass::compute);
   const Plan plan = compiled();
   EXPECT_EQ(plan.passes[0].submission, plan.passes[1].submission);
 }
@@ -100,8 +88,7 @@ TEST_F(Queues, UpdatingAPartOfAHistoryOnTheQueueThatOwnsItGivesAVerifiedPlan) {
     return graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
   };
   TextureHistory history = declare();
-  PassBuilder fill = graph_.add_pass("fill", QueueClass::compute);
-  graph_.output(fill.write(history.current, access::storage_write_compute, {}, Contents::discard));
+  graph_.output(add_write(graph_, history.current, QueueClass::compute));
   graph_.leave_histories(compiled().finals);
   history = declare();
   ASSERT_EQ(history.validity, HistoryValidity::valid);
@@ -117,14 +104,9 @@ TEST_F(Queues, HistoryWhoseMipsSeveralQueuesReadIsLeftInOneLayout) {
     graph_.reset();
     const TextureHistory history =
         graph_.create_texture_history("h", {VK_FORMAT_R8_UNORM, Extent::absolute(8, 8), 2});
-    PassBuilder writer = graph_.add_pass("writer");
-    const Texture written =
-        writer.write(history.current, access::storage_write_compute, {}, Contents::discard);
-    for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute}) {
-      PassBuilder reader = graph_.add_pass("reader", queue);
-      reader.read(written, access::sampled_compute, Range::mip(1));
-      reader.side_effect();
-    }
+    const Texture written = add_write(graph_, history.current);
+    for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute})
+      add_read(graph_, written, access::sampled_compute, queue, Range::mip(1));
     const Plan plan = compiled();
     for (const FinalState& left : plan.finals) EXPECT_NE(left.written, WriteCoverage::part);
     graph_.leave_histories(plan.finals);
@@ -166,12 +148,10 @@ TEST_F(Queues, HistoryWhoseMipsEndTheFrameInDifferentStagesGivesAVerifiedPlan) {
 TEST_F(Queues, ImportWithTheDefaultStateIsFirstUsedAfterASemaphoreThatTheFrameWaitsFor) {
   for (const QueueClass queue : {QueueClass::graphics, QueueClass::compute}) {
     graph_.reset();
-    ImportedTexture import{.image = fake_handle<VkImage>(), .desc = kDesc};
+    ImportedTexture import{.image = fake_handle<VkImage>(), .desc = kSmall};
     import.usage = ~VkImageUsageFlags{0};
     import.final_state = access::present;
-    PassBuilder draw = graph_.add_pass("draw", queue);
-    (void)draw.write(graph_.import_texture("window", import), access::storage_write_compute, {},
-                     Contents::discard);
+    add_write(graph_, graph_.import_texture("window", import), queue);
     const Plan plan = compiled();
     ASSERT_FALSE(plan.transitions.empty());
     EXPECT_NE(plan.transitions[0].src_stages &
@@ -186,15 +166,12 @@ TEST_F(Queues, ImportWithTheDefaultStateIsFirstUsedAfterASemaphoreThatTheFrameWa
 // Particles are simulated on the compute queue while the scene is drawn on the graphics queue. The
 // two share no memory, so that neither queue waits for the previous frame of the other.
 TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {
-  const TextureHistory particles = graph_.create_texture_history("particles", kDesc);
+  const TextureHistory particles = graph_.create_texture_history("particles", kSmall);
   PassBuilder simulate = graph_.add_pass("simulate", QueueClass::compute);
   (void)simulate.write(particles.current, access::storage_write_compute, {}, Contents::discard);
   simulate.side_effect();
-  PassBuilder draw = graph_.add_pass("draw");
-  const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
-  PassBuilder show = graph_.add_pass("show");
-  show.read(scene, access::sampled_fragment);
-  show.side_effect();
+  const Texture scene = add_write(graph_, make("scene"), access::color_attachment);
+  add_read(graph_, scene, access::sampled_fragment);
   const Plan plan = compiled();
   ASSERT_GE(plan.submissions.size(), 2u);
   for (const Submission& submission : plan.submissions) EXPECT_EQ(submission.frame_before, 0u);
@@ -204,11 +181,8 @@ TEST_F(Queues, QueuesThatShareNoMemoryDoNotWaitForEachOthersPreviousFrame) {
 // The pass `blur` reads the texture that the graphics queue writes. In the next frame the graphics
 // queue writes to the same memory, so that it must wait for the previous frame's `blur`.
 TEST_F(Queues, GraphicsQueueWaitsBeforeReusingMemoryThatComputeReadInThePreviousFrame) {
-  PassBuilder draw = graph_.add_pass("scene");
-  const Texture scene = draw.write(make("scene"), access::color_attachment, {}, Contents::discard);
-  PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
-  blur.read(scene, access::sampled_compute);
-  blur.side_effect();
+  const Texture scene = add_write(graph_, make("scene"), access::color_attachment);
+  add_read(graph_, scene, access::sampled_compute, QueueClass::compute);
   Plan plan = compiled();
   const auto compute = static_cast<std::uint8_t>(1u << static_cast<unsigned>(QueueClass::compute));
   ASSERT_EQ(plan.submissions[0].queue, QueueClass::graphics);
@@ -224,12 +198,9 @@ TEST_F(Queues, QueueThatReadsAHistoryOfAnotherQueueWaitsForThePreviousFrame) {
   Plan plan;
   for (int frame = 0; frame < 2; ++frame) {
     graph_.reset();
-    const TextureHistory history = graph_.create_texture_history("history", kDesc);
-    if (frame == 1) {
-      PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
-      blur.read(history.previous(), access::sampled_compute);
-      blur.side_effect();
-    }
+    const TextureHistory history = graph_.create_texture_history("history", kSmall);
+    if (frame == 1)
+      add_read(graph_, history.previous(), access::sampled_compute, QueueClass::compute);
     PassBuilder draw = graph_.add_pass("draw");
     (void)draw.write(history.current, access::color_attachment, {}, Contents::discard);
     draw.side_effect();
@@ -255,14 +226,10 @@ TEST_F(Queues, HistoryWrittenOnOneQueueAndReadOnAnotherIsValidInTheNextFrame) {
     for (int frame = 0; frame < 2; ++frame) {
       graph_.reset();
       graph_.reset_history(frame == 0 ? "history" : "");
-      const TextureHistory history = graph_.create_texture_history("history", kDesc);
+      const TextureHistory history = graph_.create_texture_history("history", kSmall);
       validity = history.validity;
-      PassBuilder occlusion = graph_.add_pass("occlusion", QueueClass::compute);
-      const Texture written =
-          occlusion.write(history.current, access::storage_write_compute, {}, Contents::discard);
-      PassBuilder lighting = graph_.add_pass("lighting");
-      lighting.read(written, access::sampled_fragment);
-      lighting.side_effect();
+      const Texture occlusion = add_write(graph_, history.current, QueueClass::compute);
+      add_read(graph_, occlusion, access::sampled_fragment);
       Plan plan = compiled();
       graph_.leave_histories(plan.finals);
       ASSERT_FALSE(plan.finals.empty());
@@ -288,7 +255,7 @@ TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) 
     limits_.queue_families[1] = 0;
     const Texture fixed =
         graph_.import_texture("static", {.image = fake_handle<VkImage>(),
-                                         .desc = kDesc,
+                                         .desc = kSmall,
                                          .usage = VK_IMAGE_USAGE_STORAGE_BIT,
                                          .initial_state = state,
                                          .final_state = has_final_state ? final_state : State{}});
@@ -312,15 +279,10 @@ TEST_F(Queues, ReadingAnImportThatNoQueueWritesNeedsNoSubmissionsWithoutPasses) 
 // Two queues read one texture, each after the pass that writes it and not after each other.
 TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
   limits_.queue_families[1] = 0;
-  PassBuilder writer = graph_.add_pass("writer");
-  const Texture shared =
-      writer.write(make("shared"), access::storage_write_compute, {}, Contents::discard);
+  const Texture shared = add_write(graph_, make("shared"));
   for (const QueueClass queue :
-       {QueueClass::graphics, QueueClass::compute, QueueClass::graphics, QueueClass::compute}) {
-    PassBuilder reader = graph_.add_pass("reader", queue);
-    reader.read(shared, access::storage_read_compute);
-    reader.side_effect();
-  }
+       {QueueClass::graphics, QueueClass::compute, QueueClass::graphics, QueueClass::compute})
+    add_read(graph_, shared, access::storage_read_compute, queue);
   const Plan plan = compiled();
   EXPECT_EQ(plan.submissions.size(), 3u);
   EXPECT_EQ(plan.waits.size(), 1u);
@@ -331,16 +293,12 @@ TEST_F(Queues, QueuesThatOnlyReadATextureDoNotWaitForEachOther) {
 TEST_F(Queues, SubmissionWaitsInTheStagesThatUseWhatItWaitsFor) {
   for (const bool has_mirror : {false, true}) {
     graph_.reset();
-    PassBuilder ao = graph_.add_pass("ao", QueueClass::compute);
-    const Texture occlusion =
-        ao.write(make("ao"), access::storage_write_compute, {}, Contents::discard);
+    const Texture occlusion = add_write(graph_, make("ao"), QueueClass::compute);
     PassBuilder light = graph_.add_pass("light");
     light.read(occlusion, access::storage_read_fragment);
     (void)light.write(make("color"), access::color_attachment, {}, Contents::discard);
     light.side_effect();
-    PassBuilder blur = graph_.add_pass("blur", QueueClass::compute);
-    const Texture blurred =
-        blur.write(make("blurred"), access::storage_write_compute, {}, Contents::discard);
+    const Texture blurred = add_write(graph_, make("blurred"), QueueClass::compute);
     PassBuilder mirror = graph_.add_pass("mirror");
     mirror.read(blurred, access::sampled_fragment);
     if (has_mirror)
@@ -368,7 +326,7 @@ TEST_F(Queues, ReadersOfAnAttachmentOnTwoQueuesDoNotWaitForEachOther) {
       graph_.reset();
       PassBuilder gbuffer = graph_.add_pass("gbuffer");
       const Texture depth =
-          gbuffer.write(graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kDesc.extent, 2}),
+          gbuffer.write(graph_.create_texture("depth", {VK_FORMAT_D32_SFLOAT, kSmall.extent, 2}),
                         access::depth_attachment, {}, Contents::discard);
       Texture occlusion;
       Texture color;

@@ -47,6 +47,13 @@ struct Resource {
   std::vector<bool> written;  // for each subresource
   bool old = false;           // an older history slot
   std::uint32_t last_pass = kNone;
+
+  bool has(bool value) const {
+    return std::find(written.begin(), written.end(), value) != written.end();
+  }
+  Range one(std::uint32_t sub) const {
+    return {static_cast<std::uint16_t>(sub % mips), 1, static_cast<std::uint16_t>(sub / mips), 1};
+  }
 };
 
 class Declarer {
@@ -61,9 +68,7 @@ class Declarer {
     if (options_.histories && dice_.chance(100)) add_history();
     for (std::uint32_t i = 0; i < passes; ++i) add_pass(i);
     for (Resource& resource : resources_) {
-      const bool all = std::find(resource.written.begin(), resource.written.end(), false) ==
-                       resource.written.end();
-      if (resource.old || !all || !dice_.chance(90)) continue;
+      if (resource.old || resource.has(false) || !dice_.chance(90)) continue;
       if (resource.texture)
         graph_.output(resource.handle);
       else
@@ -234,13 +239,10 @@ class Declarer {
     // read of the older slot must then come after the write.
     if (old && !resource.written[0] && !resources_[history_ - 1].written[0]) return;
     Range range;
-    const bool all = std::find(resource.written.begin(), resource.written.end(), false) ==
-                     resource.written.end();
-    if (!old && (!all || (resource.written.size() > 1 && dice_.chance(100)))) {
+    if (!old && (resource.has(false) || (resource.written.size() > 1 && dice_.chance(100)))) {
       const auto start = dice_.roll(static_cast<std::uint32_t>(resource.written.size()));
       if (!resource.written[start]) return;
-      range = {static_cast<std::uint16_t>(start % resource.mips), 1,
-               static_cast<std::uint16_t>(start / resource.mips), 1};
+      range = resource.one(start);
     }
     resource.last_pass = index;
     if (options_.mistakes && dice_.chance(4)) range.base_mip = 40;
@@ -262,8 +264,7 @@ class Declarer {
     // An older slot is updated in place.
     if ((resource.old && !resource.written[0]) || resource.last_pass == index) return;
     resource.last_pass = index;
-    const bool had_any =
-        std::find(resource.written.begin(), resource.written.end(), true) != resource.written.end();
+    const bool had_any = resource.has(true);
     Contents contents = !resource.old && dice_.chance(80) ? Contents::discard : Contents::keep;
     if (!resource.texture) {
       std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3}, {0, 1, 2, 3}, {2});
@@ -279,13 +280,11 @@ class Declarer {
     bool had_any_in_range = had_any;
     if (resource.written.size() > 1 && dice_.chance(150)) {
       const auto start = dice_.roll(static_cast<std::uint32_t>(resource.written.size()));
-      range = {static_cast<std::uint16_t>(start % resource.mips), 1,
-               static_cast<std::uint16_t>(start / resource.mips), 1};
+      range = resource.one(start);
       had_any_in_range = had_contents = resource.written[start];
       resource.written[start] = true;
     } else {
-      had_contents = std::find(resource.written.begin(), resource.written.end(), false) ==
-                     resource.written.end();
+      had_contents = !resource.has(false);
       resource.written.assign(resource.written.size(), true);
     }
     std::uint32_t way = pick(dice_, queue, {0, 1, 2, 3, 4}, {0, 1, 3, 4}, {3});

@@ -112,7 +112,8 @@ TEST_F(TimestampsTest, TimingsRequestedBeforeTheFrameFinishedAreRightWhenRequest
   ASSERT_TRUE(executor.record(declare(), gpu_.commands()));
   ticks = {1000, 1007};  // the previous frame's ticks
   EXPECT_EQ(executor.timings().size(), 1u);
-  gpu_.end_and_wait();
+  gpu_.end();
+  gpu_.submit_and_wait();
   ticks = {2000, 2003};
   ASSERT_EQ(executor.timings().size(), 1u);
   EXPECT_DOUBLE_EQ(executor.timings()[0].milliseconds, milliseconds(3));
