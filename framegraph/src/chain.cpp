@@ -128,27 +128,24 @@ class Chainer {
   }
 
   void add_initial_states() {
-    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-      if (graph_.resources[r].external == kNone) continue;
-      const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
+    for_each_external(graph_, [this](std::uint32_t r, const auto&, const ExternalRecord& external) {
       AccessRecord state = state_use(r, external.initial_state);
       if (!external.has_contents) state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
       add_access(state, kNone, queue_of(limits_, external.queue));
-    }
+    });
   }
 
   void add_final_states() {
     const auto end = static_cast<std::uint32_t>(plan_.passes.size());
     const State any{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT,
                     VK_IMAGE_LAYOUT_GENERAL};
-    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-      if (graph_.resources[r].external == kNone) continue;
-      const ExternalRecord& external = graph_.externals[graph_.resources[r].external];
+    for_each_external(graph_, [&](std::uint32_t r, const ResourceRecord& resource,
+                                  const ExternalRecord& external) {
       if (external.has_final_state)
         add_access(state_use(r, external.final_state), end, QueueClass::graphics);
-      else if (graph_.resources[r].origin == Origin::history && !is_left_in_one_layout(r))
+      else if (resource.origin == Origin::history && !is_left_in_one_layout(r))
         add_access(state_use(r, any), end, QueueClass::graphics);
-    }
+    });
   }
 
   // Returns whether the frame leaves all subresources of a history slot in one layout.

@@ -34,11 +34,11 @@ class Culler {
   // A frame may declare a read of an older slot only once the slot has contents. Its writers run
   // before, because no later frame would read it otherwise.
   void find_new_histories() {
-    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-      const ResourceRecord& resource = graph_.resources[r];
-      if (resource.slot != 0 && !graph_.externals[resource.external].has_contents)
+    for_each_external(graph_, [this](std::uint32_t r, const ResourceRecord& resource,
+                                     const ExternalRecord& external) {
+      if (resource.slot != 0 && !external.has_contents)
         workspace_.cull.history_user[r - resource.slot] = kNoPass;
-    }
+    });
   }
 
   void walk() {
@@ -51,16 +51,12 @@ class Culler {
 
   void seed() {
     for (const OutputRecord& output : graph_.outputs) need_all(output.resource, kByOutput);
-    if (graph_.externals.empty()) return;
-    for (std::uint32_t r = 0; r < graph_.resources.size(); ++r) {
-      const ResourceRecord& resource = graph_.resources[r];
-      if (resource.external == kNone) continue;
-      if (resource.origin == Origin::imported &&
-          graph_.externals[resource.external].has_final_state)
-        need_all(r, kByOutput);
+    for_each_external(graph_, [this](std::uint32_t r, const ResourceRecord& resource,
+                                     const ExternalRecord& external) {
+      if (resource.origin == Origin::imported && external.has_final_state) need_all(r, kByOutput);
       const std::uint32_t user = workspace_.cull.history_user[r - resource.slot];
       if (user != kNone) need_all(r, user | kHistoryBit);
-    }
+    });
   }
 
   void need_all(std::uint32_t resource, std::uint32_t why) {

@@ -213,17 +213,15 @@ class QueueAssigner {
     ByQueue last = kNothing;
     bool imports = false;
     s_.last_queue.assign(graph_.resources.size(), QueueClass::graphics);
-    for (std::uint32_t r = 0; r < graph_.resources.size() && !graph_.externals.empty(); ++r) {
-      const ResourceRecord& resource = graph_.resources[r];
-      if (resource.external == kNone) continue;
-      const ExternalRecord& external = graph_.externals[resource.external];
-      imports |= resource.origin == Origin::imported;
-      if (resource.origin == Origin::imported ? !external.has_final_state : stays_on_one_queue(r))
-        continue;
+    for_each_external(graph_, [&](std::uint32_t r, const ResourceRecord& resource,
+                                  const ExternalRecord& external) {
+      const bool is_import = resource.origin == Origin::imported;
+      imports |= is_import;
+      if (is_import ? !external.has_final_state : stays_on_one_queue(r)) return;
       for_each_last_use(r, [&](const Use& use) {
         if (use.last != kNone) wait_for(use, use.last, QueueClass::graphics, last);
       });
-    }
+    });
     drop_implied(last);
     workspace_.final_submission = kNone;
     for (std::uint32_t s = 0; s < plan_.submissions.size(); ++s)

@@ -44,12 +44,10 @@ class Replay {
     s_.versions.assign(v_.graph.resources.size(), 0);
     s_.touches.assign(first.back(), {});
     v_.plan.contents.assign(v_.graph.accesses.size(), 0);
-    if (v_.graph.externals.empty()) return;
-    for (std::uint32_t r = 0; r < v_.graph.resources.size(); ++r) {
-      const std::uint32_t external = v_.graph.resources[r].external;
-      if (external == kNone || !v_.graph.externals[external].has_contents) continue;
-      for (std::uint32_t sub = first[r]; sub < first[r + 1]; ++sub) s_.touches[sub].written = true;
-    }
+    for_each_external(v_.graph, [&](std::uint32_t r, const auto&, const ExternalRecord& external) {
+      for (std::uint32_t sub = first[r]; external.has_contents && sub < first[r + 1]; ++sub)
+        s_.touches[sub].written = true;
+    });
   }
 
   // Returns whether an access is valid and of the usual kind: to all of a transient.
@@ -115,16 +113,14 @@ class Replay {
     for_each_sub(v_.graph, v_.workspace, access,
                  [&](std::uint32_t sub) { other_writes |= !writes || !s_.touches[sub].reads; });
     if (writes && other_writes) {
-      v_.fail(ErrorCode::two_writers,
-              v_.pass_text(pass) + " writes a subresource of " + v_.resource_text(access.resource) +
-                  " twice: declare one write that does both",
-              pass, access.resource, access.version);
+      v_.fail(ErrorCode::two_writers, pass, access,
+              "writes a subresource of " + v_.resource_text(access.resource) +
+                  " twice: declare one write that does both");
     } else {
-      v_.fail(ErrorCode::read_and_write,
-              v_.pass_text(pass) + " uses a subresource of " + v_.resource_text(access.resource) +
+      v_.fail(ErrorCode::read_and_write, pass, access,
+              "uses a subresource of " + v_.resource_text(access.resource) +
                   " in two accesses that exclude each other: read and write it in one access that "
-                  "does both, or in disjoint mips or layers, and read it in one layout",
-              pass, access.resource, access.version);
+                  "does both, or in disjoint mips or layers, and read it in one layout");
     }
   }
 
@@ -132,31 +128,28 @@ class Replay {
     const ResourceRecord& resource = v_.graph.resources[access.resource];
     if (resource.origin == Origin::history && resource.slot != 0) {
       if (history_is_written(access.resource - resource.slot)) return;
-      v_.fail(ErrorCode::history_never_written,
-              v_.pass_text(pass) + " reads " + v_.resource_text(access.resource) + " of " +
+      v_.fail(ErrorCode::history_never_written, pass, access,
+              "reads " + v_.resource_text(access.resource) + " of " +
                   std::to_string(resource.slot) +
                   " frame(s) ago, but no frame wrote it and no pass of this one writes it: write "
-                  "its current slot",
-              pass, access.resource, access.version);
+                  "its current slot");
       return;
     }
-    v_.fail(ErrorCode::read_before_write,
-            v_.pass_text(pass) + (access.flags & kWrite ? " reads and writes " : " reads ") +
+    v_.fail(ErrorCode::read_before_write, pass, access,
+            (access.flags & kWrite ? "reads and writes " : "reads ") +
                 v_.resource_text(access.resource) + " version " + std::to_string(access.version) +
                 ", parts of which nothing has written: write it in an earlier pass" +
-                (resource.origin == Origin::imported ? ", or import it with its contents" : ""),
-            pass, access.resource, access.version);
+                (resource.origin == Origin::imported ? ", or import it with its contents" : ""));
   }
 
   void report_kept(std::uint32_t pass, const AccessRecord& access) {
-    v_.fail(ErrorCode::read_before_write,
-            v_.pass_text(pass) + " writes " + v_.resource_text(access.resource) +
+    v_.fail(ErrorCode::read_before_write, pass, access,
+            "writes " + v_.resource_text(access.resource) +
                 " and keeps its earlier contents (Contents::keep, the default), but nothing has "
                 "written any: write it with Contents::discard" +
                 (v_.graph.resources[access.resource].origin == Origin::imported
                      ? ", or import it with its contents"
-                     : ""),
-            pass, access.resource, access.version);
+                     : ""));
   }
 
   bool history_is_written(std::uint32_t current) const {
@@ -180,14 +173,13 @@ class Replay {
     const std::uint32_t writer = writer_of(access.resource, access.version);
     const bool writes = (access.flags & kWrite) != 0;
     v_.fail(
-        ErrorCode::stale_handle,
-        v_.pass_text(pass) + (writes ? " writes " : " reads ") + v_.resource_text(access.resource) +
-            " version " + std::to_string(access.version) + ", but the version then is " +
+        ErrorCode::stale_handle, pass, access,
+        (writes ? "writes " : "reads ") + v_.resource_text(access.resource) + " version " +
+            std::to_string(access.version) + ", but the version then is " +
             std::to_string(expected) +
             (writer != kNone && writer != pass
                  ? ": " + v_.pass_text(writer) + " consumed it, use the handle its write returned"
-                 : ": use the handle that the last write returned"),
-        pass, access.resource, access.version);
+                 : ": use the handle that the last write returned"));
   }
 
   void check_output(const OutputRecord& output) {

@@ -19,6 +19,16 @@ struct Validation {
             std::uint32_t resource = kNone, std::uint32_t version = 0) {
     errors.push_back({code, std::move(message), VK_SUCCESS, pass, resource, version});
   }
+  // Adds an error with the sentence "pass 'NAME' WHAT" about one of its accesses.
+  void fail(ErrorCode code, std::uint32_t pass, const AccessRecord& access,
+            const std::string& what) {
+    fail(code, pass_text(pass) + " " + what, pass, access.resource, access.version);
+  }
+  // Adds an error with the sentence "texture 'NAME' WHAT", or of a buffer. Returns false.
+  bool refuse(ErrorCode code, std::uint32_t resource, const std::string& what) {
+    fail(code, resource_text(resource) + " " + what, kNone, resource);
+    return false;
+  }
   std::string pass_text(std::uint32_t pass) const {
     return std::string("pass '").append(graph.pass_name(pass)).append("'");
   }

@@ -108,7 +108,7 @@ struct Checker {
 
   // Adds an error about the access and returns false.
   bool refuse(ErrorCode code, const std::string& sentence) {
-    v.fail(code, v.pass_text(pass) + " " + sentence, pass, access.resource, access.version);
+    v.fail(code, pass, access, sentence);
     return false;
   }
   bool refuse_use(ErrorCode code, const char* how) { return refuse(code, subject() + how); }

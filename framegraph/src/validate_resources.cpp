@@ -14,8 +14,7 @@ std::string size_text(const ResourceRecord& r) {
 
 bool check_extent(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const auto bad = [&](const std::string& what) {
-    v.fail(ErrorCode::bad_description, v.resource_text(index) + " " + what, kNone, index);
-    return false;
+    return v.refuse(ErrorCode::bad_description, index, what);
   };
   if (r.width == 0 || r.height == 0 || r.depth == 0)
     return bad("has size " + size_text(r) + ": every side must be at least 1");
@@ -33,8 +32,7 @@ bool check_extent(Validation& v, std::uint32_t index, const ResourceRecord& r) {
 
 bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const auto bad = [&](const std::string& what) {
-    v.fail(ErrorCode::bad_description, v.resource_text(index) + " " + what, kNone, index);
-    return false;
+    return v.refuse(ErrorCode::bad_description, index, what);
   };
   if (r.format == VK_FORMAT_UNDEFINED) return bad("has no format: give TextureDesc::format");
   if (!check_extent(v, index, r)) return false;
@@ -55,11 +53,9 @@ bool check_texture(Validation& v, std::uint32_t index, const ResourceRecord& r) 
 
 bool check_buffer(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   if (r.size != 0 && r.size <= v.limits.max_buffer_size) return true;
-  v.fail(ErrorCode::bad_description,
-         v.resource_text(index) + " has " + std::to_string(r.size) +
-             " bytes: the device allows 1 to " + std::to_string(v.limits.max_buffer_size),
-         kNone, index);
-  return false;
+  return v.refuse(ErrorCode::bad_description, index,
+                  "has " + std::to_string(r.size) + " bytes: the device allows 1 to " +
+                      std::to_string(v.limits.max_buffer_size));
 }
 
 // Returns the resource that belongs to an external.
@@ -72,32 +68,25 @@ std::uint32_t resource_of(const GraphDescription& graph, std::uint32_t external)
 void check_external(Validation& v, std::uint32_t index, const ResourceRecord& r) {
   const ExternalRecord& external = v.graph.externals[r.external];
   if (external.same_as != kNone)
-    v.fail(ErrorCode::bad_import,
-           v.resource_text(index) + " and " +
-               v.resource_text(resource_of(v.graph, external.same_as)) + " are imported with one " +
-               (r.kind == ResourceKind::texture ? "VkImage" : "VkBuffer") +
-               ": import it once and use that handle in every pass, because the graph orders the "
-               "uses of each resource by itself",
-           kNone, index);
+    v.refuse(ErrorCode::bad_import, index,
+             "and " + v.resource_text(resource_of(v.graph, external.same_as)) +
+                 " are imported with one " +
+                 (r.kind == ResourceKind::texture ? "VkImage" : "VkBuffer") +
+                 ": import it once and use that handle in every pass, because the graph orders "
+                 "the uses of each resource by itself");
   if (!external.has_handle)
-    v.fail(
-        ErrorCode::bad_import,
-        v.resource_text(index) + " is imported without a Vulkan handle: set " +
-            (r.kind == ResourceKind::texture ? "ImportedTexture::image" : "ImportedBuffer::buffer"),
-        kNone, index);
+    v.refuse(ErrorCode::bad_import, index,
+             std::string("is imported without a Vulkan handle: set ") +
+                 (r.kind == ResourceKind::texture ? "ImportedTexture::image"
+                                                  : "ImportedBuffer::buffer"));
   for (const State& state : {external.initial_state, external.final_state})
     if (r.origin == Origin::imported && !can_make(state.stages, state.access))
-      v.fail(ErrorCode::bad_import,
-             v.resource_text(index) +
-                 " is imported with a state whose access none of its stages can make, or with a "
-                 "stage that the graph does not know: give stages that make the access",
-             kNone, index);
+      v.refuse(ErrorCode::bad_import, index,
+               "is imported with a state whose access none of its stages can make, or with a stage "
+               "that the graph does not know: give stages that make the access");
   if (r.origin == Origin::history && r.slots < 2)
-    v.fail(
-        ErrorCode::history_cycle,
-        v.resource_text(index) +
-            " is a history of one slot, whose last frame is this frame: give it at least 2 slots",
-        kNone, index);
+    v.refuse(ErrorCode::history_cycle, index,
+             "is a history of one slot, whose last frame is this frame: give it at least 2 slots");
 }
 
 // Returns whether the resource is a valid transient texture with one subresource and without flags.

@@ -175,6 +175,16 @@ inline void for_each_sub(const GraphDescription& graph, const Workspace& workspa
       f(first + layer * resource.mips + mip);
 }
 
+// Calls f(resource index, record, external) for each import and history slot.
+template <typename Function>
+inline void for_each_external(const GraphDescription& graph, Function&& f) {
+  if (graph.externals.empty()) return;
+  for (std::uint32_t r = 0; r < graph.resources.size(); ++r) {
+    const ResourceRecord& resource = graph.resources[r];
+    if (resource.external != kNone) f(r, resource, graph.externals[resource.external]);
+  }
+}
+
 // The phases, in the order in which they run.
 
 // Numbers the subresources and finds all errors of the declaration. Returns false if there are any.
