@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -26,7 +26,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
 using ::testing::Not;
+using ::testing::UnorderedElementsAreArray;
 
 // Two loops, one within the other, as ACO prints them before registers are assigned.
 constexpr const char* kNestedLoops =
@@ -57,9 +59,7 @@ CompiledShader shader_of(const char* aco, const char* assembly = "not supported"
 }
 
 TEST(GpuCost, LoopsInACompiledShaderAreFoundWithTheirNestingAndContents) {
-  const auto blocks = parse_blocks(shader_of(kNestedLoops));
-  ASSERT_TRUE(blocks) << blocks.error();
-  const std::vector<Loop> loops = find_loops(*blocks);
+  const std::vector<Loop> loops = find_loops(parse_blocks(shader_of(kNestedLoops)).value());
   ASSERT_EQ(loops.size(), 2u);
   EXPECT_EQ(loops[0].first, 1u);
   EXPECT_EQ(loops[0].last, 3u);
@@ -119,7 +119,7 @@ TEST(GpuCost, ShaderTextOfAnUnsupportedCompilerIsReported) {
 // The number of times that each loop of the search runs; empty if one is not known.
 std::vector<double> search_iterations(const OcclusionSettings& settings,
                                       const std::vector<CompiledLoop>& loops) {
-  return loop_iterations({"gtao", settings}, loops).value_or(std::vector<double>{});
+  return loop_iterations({Pass::gtao, settings}, loops).value_or(std::vector<double>{});
 }
 
 TEST(GpuCost, LoopsOverSlicesAndStepsAreDistinguishedByTheirNumberOfFetches) {
@@ -159,9 +159,9 @@ TEST(GpuCost, LoopWithoutAKnownNumberOfIterationsIsReported) {
   const OcclusionSettings settings;
   const CompiledLoop loop{.depth = 1, .instructions = 7};
   const auto iterations =
-      loop_iterations({"multi-bounce", settings, FrameState::moving}, {&loop, 1});
+      loop_iterations({Pass::mask_depth, settings, FrameState::moving}, {&loop, 1});
   ASSERT_FALSE(iterations);
-  EXPECT_THAT(iterations.error(), HasSubstr("'multi-bounce' (moving frame)"));
+  EXPECT_THAT(iterations.error(), HasSubstr("'mask depth' (moving frame)"));
   EXPECT_THAT(iterations.error(), HasSubstr("7 instructions"));
 }
 
@@ -201,6 +201,32 @@ TEST(GpuCost, BranchCountsByTheShareOfWavesThatExecuteIt) {
 }
 
 constexpr double kWaves = 4;  // on a SIMD
+
+// A label or a name that the passes do not give would leave accesses and loops undeclared.
+TEST(GpuCost, PassesAndImagesOfTheModelAreThoseOfTheListOfWork) {
+  std::set<std::string_view> labels, images;
+  for (unsigned bits = 0; bits < 32; ++bits) {
+    const bool simple = bits % 2 == 0, half = bits / 2 % 2 == 0;
+    CostInputs inputs{.normals = simple, .mask = half, .samples = half};
+    inputs.settings.tile_size = 8;
+    inputs.settings.depth_layers = simple ? 1 : 2;
+    inputs.settings.thickness_limit = static_cast<AlcoveThicknessLimit>(!simple);
+    inputs.settings.bent_normal = half;
+    inputs.settings.half_resolution = half ? 1 : 0;
+    inputs.settings.specular = static_cast<AlcoveSpecular>(bits / 4 % 4 % 3);
+    inputs.settings.history_frames = bits < 16 ? 0 : 8;
+    const auto frames = describe_frames(inputs);
+    ASSERT_TRUE(frames) << frames.error();
+    for (const AlcoveWork& frame : *frames) {
+      for (const auto& dispatch : std::span(frame.dispatches).first(frame.dispatch_count))
+        labels.insert(dispatch.label);
+      for (const auto& image : std::span(frame.resources).first(frame.resource_count))
+        images.insert(image.name);
+    }
+  }
+  EXPECT_THAT(labels, UnorderedElementsAreArray(kPassLabels));
+  EXPECT_THAT(images, IsSupersetOf(names::kAll));
+}
 
 // An image of 4 bytes a texel, and a dispatch that has an invocation for each texel.
 constexpr std::uint32_t kSide = 1024;
@@ -281,7 +307,7 @@ TEST(CacheTraffic, TrafficOfTheSearchAgreesWithAnotherModel) {
   for (std::size_t i = 0; i < kGpuParts.size(); ++i) {
     const Expected& expected = kExpected[i];
     const CacheTraffic found = cache_traffic(
-        kGpuParts[i], accesses_of({"gtao", settings, FrameState::moving, images, {17, 60, 2}}),
+        kGpuParts[i], accesses_of({Pass::gtao, settings, FrameState::moving, images, {17, 60, 2}}),
         expected.waves);
     EXPECT_NEAR(found.lines_per_load / expected.lines, 1, 0.1) << kGpuParts[i].name;
     EXPECT_NEAR(found.l2_bytes / kPixels / expected.l2_bytes_per_pixel, 1, 0.1)
@@ -369,13 +395,16 @@ TEST_P(CompiledPresets, DeclaredAccessesAreTheLoadsOfTheCompiledShaders) {
   inputs.width = 384;
   inputs.height = 216;
   for (const AlcoveQuality quality : presets()) {
-    inputs.settings = OcclusionSettings(quality, 0.5f);
-    const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
-    ASSERT_TRUE(frame) << frame.error();
-    for (const ModelledPass& pass : frame->passes) {
-      // The loads of rare branches, such as those of a missing normal, are less than half a load.
-      EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
-          << passes::kQualityNames.at(quality) << ", " << pass.pass;
+    for (const bool mask : {false, true}) {
+      inputs.settings = OcclusionSettings(quality, 0.5f);
+      inputs.mask = mask;
+      const auto frame = modelled_frame(part_, device_, inputs, FrameState::moving);
+      ASSERT_TRUE(frame) << frame.error();
+      for (const ModelledPass& pass : frame->passes) {
+        // The loads of rare branches, such as those of a missing normal, are less than half a load.
+        EXPECT_NEAR(pass.wave.loads, pass.declared_loads, 0.5)
+            << passes::kQualityNames.at(quality) << ", " << pass.pass << ", mask " << mask;
+      }
     }
   }
 }

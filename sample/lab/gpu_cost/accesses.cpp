@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 #include "maths/sampling.h"
@@ -22,11 +23,15 @@ maths::SliceNoise noise_of(Texel tile, bool moves) {
       {static_cast<std::uint32_t>(tile.x), static_cast<std::uint32_t>(tile.y)}, kFrame, moves);
 }
 
+bool is_one_of(const PassImage& image, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, image.name) != names.end();
+}
+
 // The depth sample `step` of `steps` of one half-slice, as in gtao_search_line.h.
 ImageAccess depth_sample(const PassImage& image, const OcclusionSettings& settings, float radius_px,
                          std::uint32_t slice, float side, std::uint32_t step, std::uint32_t steps) {
   const auto tile_size = static_cast<std::int32_t>(settings.tile_size);
-  const std::int32_t scale = image.name == "half depth" ? 2 : 1;
+  const std::int32_t scale = image.name == names::kHalvedDepth ? 2 : 1;
   radius_px /= static_cast<float>(scale);
   const auto texel = [=, slices = settings.slices](Texel tile) {
     const maths::SliceNoise noise = noise_of(tile, tile_size > 1);
@@ -49,12 +54,16 @@ Accesses gtao_accesses(const PassWork& work) {
   Accesses accesses;
   std::array<std::vector<const PassImage*>, 2> layers;  // of depths that are sampled together
   for (const PassImage& image : work.images) {
-    const bool halved = image.name == "half depth", second = image.name == "second depth";
-    const bool back = image.name == "back-face depth";
+    const bool halved = image.name == names::kHalvedDepth;
+    const bool second = image.name == names::kSecondDepth;
+    const bool back = image.name == names::kBackDepth;
     if (halved) layers[0].clear();
-    if (image.name.find("depth") != std::string::npos) layers.at(second ? 1 : 0).push_back(&image);
+    if (halved || second || back || is_one_of(image, {names::kDepth, names::kOccluders}))
+      layers.at(second ? 1 : 0).push_back(&image);
     if (back) layers[1].push_back(&image);
-    if (image.direction == Direction::read && layers[0].size() < 2 && !halved && !second)
+    // With a mask, the pixel's own depth is that of the receivers.
+    const bool at_pixel = !halved && !second && image.name != names::kOccluders;
+    if (image.direction == Direction::read && layers[0].size() < 2 && at_pixel)
       accesses.push_back(at_invocation(image, tile, traced));
   }
   const std::array<std::uint32_t, 2> steps{settings.steps, passes::second_layer_steps(settings)};
@@ -100,12 +109,12 @@ void add_tiles(const PassImage& image, const PassWork& work, Accesses& accesses)
   }
 }
 
-bool is_history(const PassImage& image) { return image.name.starts_with("previous"); }
-
 // The gathers of an image: one for each channel that is read.
 std::uint32_t gathers_of(const PassImage& image, std::uint32_t channels) {
-  const auto has = [&](const char* part) { return image.name.find(part) != std::string::npos; };
-  return has("depth") || has("lobe") ? 1 : channels;
+  for (const std::string_view name :
+       {names::kDepthHistory, names::kHalfTexelDepth, names::kLobeHistory, names::kHalfTexelLobe})
+    if (image.name.ends_with(name)) return 1;
+  return channels;
 }
 
 // Moves an access of the first of `blocks` blocks of a column to the block `block`.
@@ -132,21 +141,21 @@ ImageAccess at_bent_depth(const PassImage& image) {
 // The accesses of reconstruct.comp to an image for one block of texels.
 Accesses block_accesses(const PassWork& work, const PassImage& image) {
   const bool half = work.settings.half_resolution;
+  const bool is_depth = is_one_of(image, {names::kDepth, names::kReceivers});
   if (image.direction == Direction::write) return {at_invocation(image)};
-  if (is_history(image)) {
+  if (image.name.starts_with(names::kPrevious)) {
     if (work.state == FrameState::moving) {
       const Texel motion = half ? Texel{kMotion.x / 2, kMotion.y / 2} : kMotion;
       return Accesses(gathers_of(image, 2), at_invocation(image, 1, motion, 2));
     }
     return work.state == FrameState::first ? Accesses{} : Accesses{at_invocation(image)};
   }
-  if (image.name == "depth" && half) {
+  if (is_depth && half) {
     return {at_invocation(image, 2, {-1, -1}, 2), at_invocation(image, 2, {1, -1}, 2),
             at_invocation(image, 2, {-1, 1}, 2), at_invocation(image, 2, {1, 1}, 2)};
   }
-  if (image.name == "depth")
-    return {at_invocation(image, 1, {-1, -1}, 2), at_invocation(image, 1, {}, 2)};
-  if (image.name == "normals" && has_depth_planes(work) && !work.settings.bent_normal)
+  if (is_depth) return {at_invocation(image, 1, {-1, -1}, 2), at_invocation(image, 1, {}, 2)};
+  if (image.name == names::kNormals && has_depth_planes(work) && !work.settings.bent_normal)
     return {at_bent_depth(image)};
   return {at_invocation(image, half ? 2 : 1)};
 }
@@ -156,7 +165,7 @@ Accesses block_accesses(const PassWork& work, const PassImage& image) {
 Accesses reconstruct_accesses(const PassWork& work) {
   const auto is_raw = [](const PassImage& image) {
     return image.direction == Direction::read &&
-           (image.name == "raw occlusion" || image.name == "bent-normal residual");
+           is_one_of(image, {names::kRawOcclusion, names::kResidual});
   };
   Accesses accesses;
   for (const PassImage& image : work.images)
@@ -176,9 +185,10 @@ Accesses reconstruct_accesses(const PassWork& work) {
 Accesses upsample_accesses(const PassWork& work) {
   Accesses accesses;
   for (const PassImage& image : work.images) {
-    if (image.direction == Direction::read && image.name == "depth") {
+    if (image.direction == Direction::read &&
+        is_one_of(image, {names::kDepth, names::kReceivers})) {
       accesses.push_back(at_invocation(image, 2, {-1, -1}, 2));
-    } else if (image.direction == Direction::read && image.name != "normals") {
+    } else if (image.direction == Direction::read && image.name != names::kNormals) {
       const std::uint32_t gathers = gathers_of(image, 3);
       accesses.insert(accesses.end(), gathers, at_invocation(image, 1, {-1, -1}, 2));
     } else {
@@ -193,11 +203,11 @@ Accesses upsample_accesses(const PassWork& work) {
 // axes.
 Accesses gtso_accesses(const PassWork& work) {
   const bool given =
-      std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
+      std::ranges::find(work.images, names::kNormals, &PassImage::name) != work.images.end();
   Accesses accesses;
   for (const PassImage& image : work.images) {
     accesses.push_back(at_invocation(image));
-    if (given || image.name != "depth") continue;
+    if (given || image.name != names::kDepth) continue;
     for (const std::int32_t distance : {-1, 1, -2, 2}) {
       accesses.push_back(at_invocation(image, 1, {distance, 0}));
       accesses.push_back(at_invocation(image, 1, {0, distance}));
@@ -208,7 +218,7 @@ Accesses gtso_accesses(const PassWork& work) {
 
 // The passes that copy or convert every pixel, or every second one along x and y.
 Accesses copy_accesses(const PassWork& work) {
-  const int read_scale = work.pass == "halve depth" ? 2 : 1;
+  const int read_scale = work.pass == Pass::halve_depth ? 2 : 1;
   Accesses accesses;
   for (const PassImage& image : work.images)
     accesses.push_back(at_invocation(image, image.direction == Direction::read ? read_scale : 1));
@@ -250,12 +260,12 @@ ImageAccess at_invocation(const PassImage& image, std::int32_t scale, Texel offs
 
 DispatchAccesses accesses_of(const PassWork& work) {
   DispatchAccesses dispatch{work.groups.x, work.groups.y * work.groups.z, {}};
-  if (work.pass == "gtao") dispatch.strip_columns = work.groups.y;
-  dispatch.accesses = work.pass == "gtao"                 ? gtao_accesses(work)
-                      : work.pass == "reconstruct"        ? reconstruct_accesses(work)
-                      : work.pass == "upsample"           ? upsample_accesses(work)
-                      : work.pass == "specular occlusion" ? gtso_accesses(work)
-                                                          : copy_accesses(work);
+  if (work.pass == Pass::gtao) dispatch.strip_columns = work.groups.y;
+  dispatch.accesses = work.pass == Pass::gtao                 ? gtao_accesses(work)
+                      : work.pass == Pass::reconstruct        ? reconstruct_accesses(work)
+                      : work.pass == Pass::upsample           ? upsample_accesses(work)
+                      : work.pass == Pass::specular_occlusion ? gtso_accesses(work)
+                                                              : copy_accesses(work);
   return dispatch;
 }
 

@@ -118,7 +118,7 @@ std::vector<PassImage> dispatch_images(const AlcoveWork& work, const AlcoveWorkD
     PassImage image{resource.name, Direction::read, texel_bytes(resource), resource.width,
                     resource.height};
     if (resource.kind == ALCOVE_RESOURCE_KIND_HISTORY_PREVIOUS)
-      image.name = "previous " + image.name;
+      image.name.insert(0, names::kPrevious);
     if ((access & ALCOVE_WORK_ACCESS_READ) != 0) images.push_back(image);
     if ((access & ALCOVE_WORK_ACCESS_WRITE) != 0) {
       image.direction = Direction::write;

@@ -1,7 +1,6 @@
 #include "gpu_cost/modelled_frame.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <span>
@@ -79,6 +78,7 @@ void add_caches(const GpuPart& part, const PassWork& work, const CacheAssumption
 Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const CostInputs& inputs,
                            const AlcoveWork& frame, const AlcoveWorkDispatch& dispatch,
                            FrameState state, const CacheAssumptions* assumptions) {
+  ALCOVE_TRY(const Pass pass, pass_of(dispatch.label));
   ALCOVE_TRY(const auto compiled, compile_dispatch(device, dispatch));
   const CompiledShader& shader = *compiled;
   ALCOVE_TRY(const auto statistics, read_statistics(shader));
@@ -86,8 +86,7 @@ Result<ModelledPass> model(const GpuPart& part, const NullDevice& device, const 
   const auto images = dispatch_images(frame, dispatch);
   const auto& groups = dispatch.groups;
   const PassWork work{
-      dispatch.label, inputs.settings, state, images, {groups[0], groups[1], groups[2]},
-      inputs.height};
+      pass, inputs.settings, state, images, {groups[0], groups[1], groups[2]}, inputs.height};
   std::vector<Loop> loops = find_loops(blocks);
   std::vector<CompiledLoop> summaries;
   summaries.reserve(loops.size());

@@ -1,9 +1,7 @@
 #include "gpu_cost/pass_work.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace alcove::sample {
@@ -107,17 +105,28 @@ std::string_view name_of(FrameState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
+Result<Pass> pass_of(std::string_view label) {
+  const auto found = std::ranges::find(kPassLabels, label);
+  if (found == kPassLabels.end()) {
+    return Failure("The cost model has no facts about the pass '" + std::string(label) +
+                   "'; declare it in sample/lab/gpu_cost/pass_work.h and accesses.cpp.");
+  }
+  return static_cast<Pass>(found - kPassLabels.begin());
+}
+
 Result<std::vector<double>> loop_iterations(const PassWork& work, Loops loops) {
   std::vector<double> found;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const CompiledLoop& loop = loops[i];
     const std::optional<double> known =
-        work.pass == "gtao"          ? gtao_iterations(work.settings, loops, i)
-        : work.pass == "reconstruct" ? std::optional(reconstruct_iterations(work.settings, loop))
-                                     : std::nullopt;
+        work.pass == Pass::gtao ? gtao_iterations(work.settings, loops, i)
+        : work.pass == Pass::reconstruct
+            ? std::optional(reconstruct_iterations(work.settings, loop))
+            : std::nullopt;
     if (!known) {
       std::string message =
-          "The pass '" + std::string(work.pass) + "' (" + std::string(name_of(work.state)) +
+          "The pass '" + std::string(kPassLabels.at(static_cast<std::size_t>(work.pass))) + "' (" +
+          std::string(name_of(work.state)) +
           " frame) has a loop whose number of iterations is not declared: loop " +
           std::to_string(i) + "; declare it in sample/lab/gpu_cost/pass_work.cpp. Its loops:";
       for (const CompiledLoop& each : loops) {
@@ -150,8 +159,8 @@ double branch_share(const PassWork& work, const CompiledBranch& branch) {
   const bool from_depth =
       (branch.loads == 8 || branch.loads == 9) && branch.instructions < kMostInstructions;
   const bool given =
-      std::ranges::find(work.images, "normals", &PassImage::name) != work.images.end();
-  if (work.pass == "reconstruct" && has_depth_planes(work) &&
+      std::ranges::find(work.images, names::kNormals, &PassImage::name) != work.images.end();
+  if (work.pass == Pass::reconstruct && has_depth_planes(work) &&
       (given ? branch.loads == 1 : from_depth))
     return kBentDepth;
   return from_depth ? kNormalFromDepth : 1.0;

@@ -6,6 +6,7 @@
 // is an error that names the loop, so that no count is guessed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -28,6 +29,23 @@ enum class FrameState : std::uint8_t {
 inline constexpr std::size_t kFrameStates = 4;
 [[nodiscard]] std::string_view name_of(FrameState state);
 
+// The passes of a frame that is modelled, and their labels in the list of work
+// (AlcoveWorkDispatch::label) in the order of the enumerators.
+enum class Pass : std::uint8_t {
+  resolve_depth,
+  mask_depth,
+  halve_depth,
+  gtao,
+  reconstruct,
+  upsample,
+  specular_occlusion,
+};
+inline constexpr std::array<std::string_view, 7> kPassLabels{
+    "resolve depth", "mask depth", "halve depth",       "gtao",
+    "reconstruct",   "upsample",   "specular occlusion"};
+// Returns the pass of a label. Error: the model has no facts about the pass.
+[[nodiscard]] Result<Pass> pass_of(std::string_view label);
+
 // A loop of the compiled shader. Loops that the compiler unrolled do not appear. Loops are in the
 // order of the code, an outer loop before its inner ones.
 struct CompiledLoop {
@@ -37,6 +55,30 @@ struct CompiledLoop {
 };
 
 enum class Direction : std::uint8_t { read, write };
+
+// The names in the list of work (AlcoveWorkResource::name) of the images whose accesses depend on
+// what they hold.
+namespace names {
+inline constexpr std::string_view kDepth = "depth";
+inline constexpr std::string_view kReceivers = "receivers";  // depth, if there is a mask
+inline constexpr std::string_view kOccluders = "depth of occluders";
+inline constexpr std::string_view kHalvedDepth = "half depth";
+inline constexpr std::string_view kBackDepth = "back-face depth";
+inline constexpr std::string_view kSecondDepth = "second depth";
+inline constexpr std::string_view kNormals = "normals";
+inline constexpr std::string_view kRawOcclusion = "raw occlusion";
+inline constexpr std::string_view kResidual = "bent-normal residual";
+// Comes before the name of a history, if the image is its slot of the previous frame.
+inline constexpr std::string_view kPrevious = "previous ";
+inline constexpr std::string_view kDepthHistory = "depth history";
+inline constexpr std::string_view kLobeHistory = "lobe history";
+inline constexpr std::string_view kHalfTexelDepth = "half-resolution depth";
+inline constexpr std::string_view kHalfTexelLobe = "half-resolution lobe";
+inline constexpr std::array kAll{kDepth,        kReceivers,    kOccluders,   kHalvedDepth,
+                                 kBackDepth,    kSecondDepth,  kNormals,     kRawOcclusion,
+                                 kResidual,     kDepthHistory, kLobeHistory, kHalfTexelDepth,
+                                 kHalfTexelLobe};
+}  // namespace names
 
 // An image that a pass reads or writes, in the order of its bindings.
 struct PassImage {
@@ -59,7 +101,7 @@ struct Groups {
 // A dispatch of a frame, with everything that decides how often its loops run and which texels it
 // reads and writes.
 struct PassWork {
-  std::string_view pass;  // AlcoveWorkDispatch::label
+  Pass pass = Pass::gtao;
   const OcclusionSettings& settings;
   FrameState state = FrameState::first;
   std::span<const PassImage> images;
