@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "cli/options.h"
 #include "scene/camera.h"
 #include "scene/framing.h"

@@ -8,6 +8,8 @@
 
 namespace alcove::sample {
 
+struct SceneViewRequest;
+
 // The subcommands of `alcove`, a file each. They print to stdout; an error is one sentence.
 [[nodiscard]] Result<void> run_render(const Options& options);
 [[nodiscard]] Result<void> run_compare(const Options& options);
@@ -20,6 +22,8 @@ namespace alcove::sample {
 // Returns the compiled plan of a frame of the session as text.
 [[nodiscard]] Result<std::string> plan_text(const Session& session, const Options& options);
 [[nodiscard]] Result<void> run_graph(const Options& options);
+// Returns the request for the window that the options describe.
+[[nodiscard]] SceneViewRequest scene_view_request(const Options& options);
 [[nodiscard]] Result<void> run_view(const Options& options);
 [[nodiscard]] Result<void> run_doctor(const Options& options);
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <iostream>
-#include <optional>
 
 #include "cli/commands.h"
 #include "cli/open_session.h"
@@ -79,7 +78,7 @@ Result<std::string> split_table(const Options& options, const Rendering& renderi
                                 const Truths& truths, nlohmann::ordered_json& report) {
   ALCOVE_TRY(const auto gpu, open_gpu({options.device, options.validation}));
   ALCOVE_TRY(const ErrorSplit split,
-             split_error(*gpu, rendering.scene, static_setup(options, rendering.camera),
+             split_error(*gpu, rendering.scene, {options.view, rendering.camera},
                          rendering.settings, truths.scene.visibility, truths.surfaces));
   report["split"] = to_json(split);
   ALCOVE_TRY_VOID(check_validation(*gpu));

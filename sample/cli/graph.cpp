@@ -33,7 +33,7 @@ Result<void> declare(framegraph::Graph& graph, const Session& session, const Opt
   };
   const HiddenDepths hidden = hidden_depths_of(session.settings);
   Surfaces surfaces;
-  surfaces.normals = options.occlusion.normals;
+  surfaces.normals = options.view.normals;
   if (!options.occlusion.roughness.empty())
     surfaces.roughness = options.occlusion.roughness.front();
   surfaces.gbuffer.depth = texture("depth", VK_FORMAT_R32_SFLOAT);
@@ -72,7 +72,7 @@ Result<void> print_work(const Session& session, const Options& options) {
   };
   const HiddenDepths hidden = hidden_depths_of(settings);
   add(true, ALCOVE_IMAGE_DEPTH, VK_FORMAT_R32_SFLOAT);
-  add(options.occlusion.normals != NormalSource::depth, ALCOVE_IMAGE_NORMALS, kNormalFormat);
+  add(options.view.normals != NormalSource::depth, ALCOVE_IMAGE_NORMALS, kNormalFormat);
   add(hidden.back_faces, ALCOVE_IMAGE_BACK_DEPTH, VK_FORMAT_R32_SFLOAT);
   add(hidden.second_layer, ALCOVE_IMAGE_SECOND_DEPTH, VK_FORMAT_R32_SFLOAT);
   add(settings.visibility, ALCOVE_IMAGE_VISIBILITY, VK_FORMAT_R8_UNORM);

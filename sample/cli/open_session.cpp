@@ -81,26 +81,10 @@ Result<Rendering> render(const Options& options) {
   if (uses_default_camera(options.view) && session.camera.name != ViewFinder::kFrame)
     origin += fmt::format("Camera \"{}\" of the scene; --camera none frames everything\n",
                           session.camera.name);
-  auto rendering = render(std::move(session),
-                          {options.view.width,
-                           options.view.height,
-                           options.view.frames,
-                           options.view.orbit,
-                           options.occlusion.normals,
-                           guard_band_pixels(options.occlusion.guard_band, options.view.height),
-                           {options.occlusion.roughness, std::move(environment), options.lit}});
+  auto rendering = render(std::move(session), options.view,
+                          {options.occlusion.roughness, std::move(environment), options.lit});
   if (rendering && shows_surfaces(*rendering)) std::cout << origin;
   return rendering;
-}
-
-StaticSetup static_setup(const Options& options, const Camera& camera) {
-  const std::uint32_t band = guard_band_pixels(options.occlusion.guard_band, options.view.height);
-  return {.camera = camera,
-          .width = options.view.width,
-          .height = options.view.height,
-          .frames = options.view.frames,
-          .normals = options.occlusion.normals,
-          .guard_band = {band, band}};
 }
 
 Result<SettingTimes> setting_times(const Options& options, const Session& session) {
@@ -108,10 +92,10 @@ Result<SettingTimes> setting_times(const Options& options, const Session& sessio
     return modelled_times(*options.gpu,
                           {.width = options.target_width,
                            .height = options.target_height,
-                           .normals = options.occlusion.normals != NormalSource::depth},
+                           .normals = options.view.normals != NormalSource::depth},
                           !options.no_cache);
   }
-  StaticSetup setup = static_setup(options, session.camera);
+  StaticSetup setup{options.view, session.camera};
   const double pixels = static_cast<double>(setup.width) * setup.height;
   if (options.clock == Clock::processor) {
     // A software device takes seconds for an image of the target size.

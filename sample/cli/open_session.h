@@ -6,7 +6,6 @@
 
 #include "cli/options.h"
 #include "evaluate/situations.h"
-#include "evaluate/static_view.h"
 #include "evaluate/truths.h"
 #include "render/rendering.h"
 #include "render/session.h"
@@ -26,9 +25,6 @@ namespace alcove::sample {
 
 // Opens the session that the options describe, renders it and reads the images back.
 [[nodiscard]] Result<Rendering> render(const Options& options);
-
-// The static view of `camera` with the options' size, frames and normals.
-[[nodiscard]] StaticSetup static_setup(const Options& options, const Camera& camera);
 
 // The times by the options' clock at the size for which they are wanted. Borrows the session.
 [[nodiscard]] Result<SettingTimes> setting_times(const Options& options, const Session& session);

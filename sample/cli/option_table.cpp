@@ -383,11 +383,11 @@ void add_occlusion(Table& table, Options& o) {
             "settings that `alcove recommend --out` wrote, instead of --quality");
   table.add(kAll, "--set", occlusion.set, Reader{"NAME=VALUE", read_change},
             "changes one setting; --help-all lists them. May be repeated");
-  table.add(kRender | kCompare | kMotion | kView | kRecommend, "--guard-band", occlusion.guard_band,
+  table.add(kRender | kCompare | kMotion | kView | kRecommend, "--guard-band", o.view.guard_band,
             within("PERCENT", 0.0, 50.0, "a percentage of the image's height"),
             "also render this part of the height beyond each border, unseen, so that "
             "occluders just outside count. Default: 0");
-  table.add(kAll, "--normals", occlusion.normals, one_of<NormalSource>(kNormalSourceNames),
+  table.add(kAll, "--normals", o.view.normals, one_of<NormalSource>(kNormalSourceNames),
             "normals of the occlusion and the truths: shading (with normal maps, the default), "
             "geometric (of the triangles) or depth (from the depth buffer)");
   // `render` and `graph` accept --spp without effect, so that the arguments of a `compare`

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -17,7 +16,7 @@
 #include "gpu/occlusion.h"
 #include "gpu_cost/frame_work.h"
 #include "gpu_cost/gpu_part.h"
-#include "render/normal_source.h"
+#include "render/session.h"
 #include "scene/load_scene.h"
 #include "support/glm.h"
 
@@ -41,9 +40,10 @@ enum class Command {
 enum class GraphFormat { text, dot, work };
 inline constexpr std::array<std::string_view, 3> kGraphFormatNames{"text", "dot", "work"};
 
-// The options of the view. Optional members are empty if the option was not given: choose_camera()
+// The options of the view. Without frames, the command `view` runs until its window is closed.
+// Optional members are empty if the option was not given: choose_camera()
 // then takes the value from the scene's camera or derives it from the scene. Angles are in radians.
-struct ViewOptions {
+struct ViewOptions : ViewRequest {
   std::string camera;  // name of a scene's camera; empty: the default one
   // Positions in the space of the scene's file. Scene::origin is subtracted from them later.
   std::optional<glm::dvec3> eye, target;
@@ -52,10 +52,6 @@ struct ViewOptions {
   // Whether the near plane has depth 1. If empty, depth is reversed in perspective views, where
   // that makes the relative precision of distances nearly constant, and not in orthographic views.
   std::optional<bool> reversed_z;
-  uint32_t width = 960;
-  uint32_t height = 540;
-  uint32_t frames = 1;  // 0: the command `view` runs until its window is closed
-  float orbit = 0.0f;   // radians per frame
 };
 
 // A change of one setting by --set.
@@ -65,12 +61,10 @@ struct SettingChange {
 };
 
 struct OcclusionOptions {
-  std::optional<AlcoveQuality> quality;  // none: that of OcclusionSettings
-  std::optional<float> radius;           // scene units; none: ViewFinder::radius()
-  NormalSource normals = NormalSource::shading;
+  std::optional<AlcoveQuality> quality;   // none: that of OcclusionSettings
+  std::optional<float> radius;            // scene units; none: ViewFinder::radius()
   std::optional<OcclusionSettings> file;  // --settings; a radius of 0 if it has none
   std::vector<SettingChange> set;         // in order
-  double guard_band = 0.0;                // percent of the image's height
   std::vector<float> roughness;           // overrides the materials; perceptual
   uint32_t spp = 256;                     // rays per pixel of the truth
 };

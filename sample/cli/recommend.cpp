@@ -28,9 +28,9 @@ SituationWeights chosen_weights(const Options& options) {
 
 // The command line that prints the standing error of these settings.
 std::string compare_line(const Options& options, const Session& session, const Choice& choice) {
-  std::vector<std::string> arguments =
-      render_arguments(options, {session.camera, choice.settings, std::nullopt, options.view.width,
-                                 options.view.height, choice.guard_band, options.view.frames});
+  Shot shot{options.view, session.camera, choice.settings};
+  shot.guard_band = choice.guard_band;
+  std::vector<std::string> arguments = render_arguments(options, shot);
   arguments[1] = "compare";
   arguments.insert(arguments.end(), {"--spp", std::to_string(options.occlusion.spp)});
   return shell_line(arguments);
@@ -50,7 +50,7 @@ void check_other_views(const Options& options, const Session& session,
   for (const float angle : {0.6f, -0.6f}) {
     const Camera camera = orbited(session.camera, angle);
     const auto rmse =
-        SituationErrors::create(session, static_setup(options, camera), truth_options(options))
+        SituationErrors::create(session, {options.view, camera}, truth_options(options))
             .and_then([&](SituationErrors errors) { return errors.measure(chosen.choice); });
     if (!rmse) {
       std::cout << fmt::format("  orbited by {:g} radians: not checked ({})\n", angle,
@@ -121,14 +121,14 @@ Result<void> run_recommend(const Options& options) {
       return ms;
     });
   };
-  ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(options, session.camera),
+  ALCOVE_TRY(auto errors, SituationErrors::create(session, {options.view, session.camera},
                                                   truth_options(options)));
   const RecommendationWorld world{[&](const Choice& choice) { return errors.measure(choice); },
                                   times, print_progress("settings"),
                                   options.second_layer_ms.has_value(),
                                   options.back_faces_ms.has_value()};
   ALCOVE_TRY(const Recommendation found,
-             recommend({session.settings, options.occlusion.guard_band}, goal, world));
+             recommend({session.settings, options.view.guard_band}, goal, world));
   ALCOVE_TRY_VOID(check_validation(*session.gpu));
   const Achievement& chosen = found.chosen();
   const std::string text = fmt::format("{}: RMSE {:.4f} in {:.4f} ms", choice_text(chosen.choice),

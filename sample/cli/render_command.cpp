@@ -1,7 +1,6 @@
 #include "cli/render_command.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -54,8 +53,8 @@ void append_camera(const Camera& camera, std::vector<std::string>& to) {
     to.emplace_back(camera.reversed_z ? "--reversed-z" : "--standard-z");
 }
 
-}  // namespace
-
+// Returns the options that give these settings except their radius: --quality with the quality that
+// needs the fewest changes, and --set for each change.
 std::vector<std::string> setting_arguments(const OcclusionSettings& settings) {
   AlcoveQuality closest = ALCOVE_QUALITY_CONSOLE;
   std::vector<std::string> fewest = changes(closest, settings);
@@ -71,6 +70,8 @@ std::vector<std::string> setting_arguments(const OcclusionSettings& settings) {
   return arguments;
 }
 
+}  // namespace
+
 std::vector<std::string> render_arguments(const Options& options, const Shot& shot) {
   std::vector<std::string> arguments{"alcove", "render"};
   if (!options.scene.empty()) arguments.push_back(options.scene);
@@ -83,10 +84,8 @@ std::vector<std::string> render_arguments(const Options& options, const Shot& sh
   arguments.insert(arguments.end(), {"--radius", fmt::to_string(shot.settings.radius)});
   if (shot.guard_band > 0.0)
     arguments.insert(arguments.end(), {"--guard-band", fmt::to_string(shot.guard_band)});
-  if (options.occlusion.normals != NormalSource::shading) {
-    arguments.insert(arguments.end(),
-                     {"--normals", std::string(name_of(options.occlusion.normals))});
-  }
+  if (shot.normals != NormalSource::shading)
+    arguments.insert(arguments.end(), {"--normals", std::string(name_of(shot.normals))});
   if (shot.roughness)
     arguments.insert(arguments.end(), {"--roughness", fmt::to_string(*shot.roughness)});
   if (!options.environment.empty())

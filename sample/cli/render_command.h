@@ -10,13 +10,9 @@
 namespace alcove::sample {
 
 // Returns the command line of `alcove render` that renders the shot: the program's name, then
-// arguments that parse_options() reads back. Scene, treatment of materials, environment, normals
-// and device are those of `options`.
+// arguments that parse_options() reads back. Scene, treatment of materials, environment and device
+// are those of `options`.
 [[nodiscard]] std::vector<std::string> render_arguments(const Options& options, const Shot& shot);
-
-// Returns the options that give these settings except their radius: --quality with the quality that
-// needs the fewest changes, and --set for each change.
-[[nodiscard]] std::vector<std::string> setting_arguments(const OcclusionSettings& settings);
 
 // Returns every setting of a choice that is not the default, as options of the commands.
 [[nodiscard]] std::string choice_text(const Choice& choice);

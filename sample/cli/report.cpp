@@ -1,7 +1,6 @@
 #include "cli/report.h"
 
 #include <fmt/format.h>
-#include <limits>
 
 #include "render/settings_json.h"
 #include "support/process_memory.h"
@@ -45,7 +44,7 @@ Json rendering_report(const Rendering& rendering, const Options& options) {
   report["size"] = {options.view.width, options.view.height};
   report["frames"] = options.view.frames;
   report["camera"] = camera_json(rendering.camera);
-  report["normals"] = name_of(options.occlusion.normals);
+  report["normals"] = name_of(options.view.normals);
   report["settings"] = to_json(rendering.settings);
   for (const PassTime& pass : rendering.costs.passes)
     report["timings_ms"][pass.pass] = pass.milliseconds;

@@ -6,7 +6,6 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 #include "alcove/passes/setting_table.h"
 #include "gpu_cost/presets.h"

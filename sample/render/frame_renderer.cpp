@@ -155,13 +155,15 @@ void FrameRenderer::declare_light(Graph& graph, const FrameRequest& request,
 }
 
 Result<std::unique_ptr<FrameRenderer>> FrameRenderer::create(Gpu& gpu, const Scene& scene,
-                                                             VkExtent2D size, NormalSource normals,
+                                                             const ViewRequest& view,
                                                              std::size_t kept_views,
-                                                             VkExtent2D guard_band) {
+                                                             std::optional<VkExtent2D> guard_band) {
+  const std::uint32_t band = guard_band_pixels(view.guard_band, view.height);
   std::unique_ptr<FrameRenderer> made(
-      new FrameRenderer(gpu, size, normals, kept_views, guard_band));
+      new FrameRenderer(gpu, {view.width, view.height}, view.normals, kept_views,
+                        guard_band.value_or(VkExtent2D{band, band})));
   ALCOVE_TRY(made->gbuffer_,
-             GbufferRenderer::create(gpu, scene, normals == NormalSource::geometric));
+             GbufferRenderer::create(gpu, scene, view.normals == NormalSource::geometric));
   return made;
 }
 

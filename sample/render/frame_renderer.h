@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "alcove/framegraph/executor.h"
@@ -13,6 +12,7 @@
 #include "render/gbuffer.h"
 #include "render/light.h"
 #include "render/read_back.h"
+#include "render/session.h"
 #include "render/surfaces.h"
 #include "scene/environment.h"
 #include "support/image.h"
@@ -83,12 +83,11 @@ struct FrameImages {
 // the occlusion. Each is submitted separately, so that the time of the occlusion can be measured.
 class FrameRenderer {
  public:
-  // The g-buffers of the last `kept_views` views are kept for frames that show them again.
-  [[nodiscard]] static Result<std::unique_ptr<FrameRenderer>> create(Gpu& gpu, const Scene& scene,
-                                                                     VkExtent2D size,
-                                                                     NormalSource normals,
-                                                                     std::size_t kept_views = 1,
-                                                                     VkExtent2D guard_band = {});
+  // Draws views of the size, normals and guard band of `view`; `guard_band`, in pixels, replaces
+  // its own. The g-buffers of the last `kept_views` views are kept for frames that show them again.
+  [[nodiscard]] static Result<std::unique_ptr<FrameRenderer>> create(
+      Gpu& gpu, const Scene& scene, const ViewRequest& view, std::size_t kept_views = 1,
+      std::optional<VkExtent2D> guard_band = {});
 
   // Draws a frame without reading images back. It is used for the frames before the one whose
   // images are needed.

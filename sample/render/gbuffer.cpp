@@ -1,10 +1,8 @@
 #include "render/gbuffer.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstring>
-#include <utility>
 
 #include "gpu/occlusion.h"
 #include "render/shaders/gbuffer.h"
@@ -48,6 +46,7 @@ maths::GbufferMaterial convert(const Material& material) {
   return out;
 }
 
+constexpr std::span<const GbufferTarget> kColours(kGbufferTargets.begin() + 1, 4);
 constexpr std::array<VkFormat, 4> kColourFormats{kNormalFormat, kAlbedoFormat, kMotionFormat,
                                                  kEmissiveFormat};
 
@@ -268,51 +267,41 @@ std::uint32_t GbufferRenderer::write_parameters(const GbufferView& view) {
 // the second layer, so that it does not occlude there.
 Gbuffer GbufferRenderer::add(Graph& graph, const GbufferView& view, const Gbuffer& targets) {
   Drawing drawing{view.reversed_z, write_parameters(view)};
-  Gbuffer gbuffer = targets;
-  const std::span<const GbufferTarget> colours(kGbufferTargets.begin() + 1, kColourFormats.size());
-  if (std::ranges::any_of(colours,
-                          [&](const auto& colour) { return bool{targets.*colour.texture}; })) {
-    // The fragment shader writes all colours, and Vulkan wants an attachment for each of them.
-    Gbuffer drawn = targets;
-    for (const auto& [texture, format, name] : colours)
-      if (!(drawn.*texture))
-        drawn.*texture = graph.create_texture(name, {format, extent_of(graph, targets.depth)});
-    auto pass = graph.add_pass("g-buffer");
-    drawn.depth = pass.write(targets.depth, framegraph::access::depth_attachment, {},
-                             framegraph::Contents::discard);
-    for (const auto& [texture, format, name] : colours) {
-      drawn.*texture = pass.write(drawn.*texture, framegraph::access::color_attachment, {},
-                                  framegraph::Contents::discard);
-      if (targets.*texture) gbuffer.*texture = drawn.*texture;
-    }
-    gbuffer.depth = drawn.depth;
-    pass.record(
-        [this, drawn, drawing](RecordContext& context) { record(context, drawn, drawing); });
-  } else {
-    gbuffer.depth = add_depth(graph, "g-buffer", targets.depth, drawing);
-  }
+  Gbuffer drawn = targets;
+  const auto is_wanted = [&](const GbufferTarget& colour) { return bool{targets.*colour.texture}; };
+  // The fragment shader writes all colours, and Vulkan wants an attachment for each of them.
+  for (const GbufferTarget& colour : kColours)
+    if (!is_wanted(colour) && std::ranges::any_of(kColours, is_wanted))
+      drawn.*colour.texture =
+          graph.create_texture(colour.name, {colour.format, extent_of(graph, targets.depth)});
+  drawn = add_pass(graph, "g-buffer", drawn, drawing);
+  for (const GbufferTarget& colour : kColours)
+    if (!is_wanted(colour)) drawn.*colour.texture = {};
   if (targets.back_depth) {
     drawing.culled = drawing.double_culled = VK_CULL_MODE_FRONT_BIT;
-    gbuffer.back_depth = add_depth(graph, "back faces", targets.back_depth, drawing);
+    drawn.back_depth = add_pass(graph, "back faces", {.depth = targets.back_depth}, drawing).depth;
   }
   if (targets.second_depth) {
     drawing.culled = drawing.double_culled = VK_CULL_MODE_BACK_BIT;
-    drawing.first = gbuffer.depth;
-    gbuffer.second_depth = add_depth(graph, "second layer", targets.second_depth, drawing);
+    drawing.first = drawn.depth;
+    drawn.second_depth =
+        add_pass(graph, "second layer", {.depth = targets.second_depth}, drawing).depth;
   }
-  return gbuffer;
+  return drawn;
 }
 
-Texture GbufferRenderer::add_depth(Graph& graph, const char* name, Texture depth,
-                                   const Drawing& drawing) {
+Gbuffer GbufferRenderer::add_pass(Graph& graph, const char* name, Gbuffer drawn,
+                                  const Drawing& drawing) {
   auto pass = graph.add_pass(name);
+  const auto write = [&](Texture& texture, const framegraph::Access& access) {
+    if (texture) texture = pass.write(texture, access, {}, framegraph::Contents::discard);
+  };
   if (drawing.first) pass.read(drawing.first, framegraph::access::sampled_fragment);
-  depth =
-      pass.write(depth, framegraph::access::depth_attachment, {}, framegraph::Contents::discard);
-  pass.record([this, depth, drawing](RecordContext& context) {
-    record(context, {.depth = depth}, drawing);
-  });
-  return depth;
+  write(drawn.depth, framegraph::access::depth_attachment);
+  for (const GbufferTarget& colour : kColours)
+    write(drawn.*colour.texture, framegraph::access::color_attachment);
+  pass.record([this, drawn, drawing](RecordContext& context) { record(context, drawn, drawing); });
+  return drawn;
 }
 
 }  // namespace alcove::sample

@@ -3,7 +3,6 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "alcove/framegraph/graph.h"
@@ -108,8 +107,9 @@ class GbufferRenderer {
   VkResult create_pipelines(std::size_t first_index, bool geometric_normals);
   // Writes the parameters of a view, and returns their offset in the parameter buffer.
   std::uint32_t write_parameters(const GbufferView& view);
-  framegraph::Texture add_depth(framegraph::Graph& graph, const char* name,
-                                framegraph::Texture depth, const Drawing& drawing);
+  // Adds a pass that fills the depth and the colours of `drawn` that are not null.
+  Gbuffer add_pass(framegraph::Graph& graph, const char* name, Gbuffer drawn,
+                   const Drawing& drawing);
   void record(framegraph::RecordContext& context, const Gbuffer& gbuffer,
               const Drawing& drawing) const;
 

@@ -24,6 +24,26 @@ std::int16_t snorm16(float value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
 }
 
+// A unit vector in the octahedral map of maths/octahedral.h, as signed normalised integers. The
+// error is at most 5e-5 radians.
+using PackedDirection = std::array<std::int16_t, 2>;
+
+PackedDirection packed_direction(const glm::vec3& direction) {
+  const glm::vec2 square = maths::octahedral_encode(direction);
+  return {snorm16(square.x), snorm16(square.y)};
+}
+
+struct PackedNormals {
+  PackedDirection vertex;  // normal of the vertex
+  PackedDirection face;    // normal of the triangle whose first vertex this is
+};
+
+struct PackedTangent {
+  PackedDirection direction;
+  std::int16_t side;  // sign of the bitangent: 32767 or -32767; 0 without a tangent
+  std::int16_t unused;
+};
+
 // A range of a page: the buffer, and the offset of the first byte.
 struct Place {
   VkBuffer buffer = VK_NULL_HANDLE;
@@ -131,11 +151,6 @@ class PartBuilder {
 };
 
 }  // namespace
-
-PackedDirection packed_direction(const glm::vec3& direction) {
-  const glm::vec2 square = maths::octahedral_encode(direction);
-  return {snorm16(square.x), snorm16(square.y)};
-}
 
 // Copies the meshes into pages, and creates a new page when the last one is full.
 class GpuMeshes::Builder {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "gpu/gpu.h"
@@ -18,30 +17,14 @@ namespace alcove::sample {
 // If a mesh does not have a stream, one constant element is bound with a stride of zero.
 enum class VertexStream : std::uint8_t {
   position,   // 3 floats
-  normals,    // PackedNormals
+  normals,    // PackedNormals of gpu_meshes.cpp
   uv,         // 2 floats; zero if the mesh has none
   second_uv,  // 2 floats; zero if the mesh has none
-  tangent,    // PackedTangent; zero if the mesh has none
+  tangent,    // PackedTangent of it; zero if the mesh has none
   color,      // 4 bytes, linear RGB and alpha; white if the mesh has none
   instance,   // the columns of world_from_mesh, 12 floats; the identity. One for each instance
 };
 inline constexpr std::size_t kVertexStreams = 7;
-
-// A unit vector in the octahedral map of maths/octahedral.h, as signed normalised integers. The
-// error is at most 5e-5 radians.
-using PackedDirection = std::array<std::int16_t, 2>;
-[[nodiscard]] PackedDirection packed_direction(const glm::vec3& direction);
-
-struct PackedNormals {
-  PackedDirection vertex;  // normal of the vertex
-  PackedDirection face;    // normal of the triangle whose first vertex this is
-};
-
-struct PackedTangent {
-  PackedDirection direction;
-  std::int16_t side;  // sign of the bitangent: 32767 or -32767; 0 without a tangent
-  std::int16_t unused;
-};
 
 // One indexed draw, of a part of a mesh.
 struct MeshDraw {

@@ -1,7 +1,6 @@
 #include "render/gpu_textures.h"
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <utility>
 

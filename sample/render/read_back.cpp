@@ -47,15 +47,11 @@ void ReadBack::finish() const {
 }
 
 Image<float> channel(const Texels& texels, int index) {
-  Image<float> image(texels.width, texels.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = texels.pixels[i][index];
-  return image;
+  return mapped([index](const glm::vec4& texel) { return texel[index]; }, texels);
 }
 
 Image<glm::vec3> rgb(const Texels& texels) {
-  Image<glm::vec3> image(texels.width, texels.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = texels.pixels[i];
-  return image;
+  return mapped([](const glm::vec4& texel) { return glm::vec3(texel); }, texels);
 }
 
 }  // namespace alcove::sample

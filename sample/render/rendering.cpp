@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "render/display.h"
-#include "render/session.h"
 #include "scene/camera.h"
 #include "support/image_io.h"
 #include "support/median.h"
@@ -41,8 +40,13 @@ Costs medians(const std::vector<FrameCost>& frames) {
   return costs;
 }
 
-Camera frame_camera(const RenderRequest& request, const Camera& camera, std::uint32_t frame) {
+Camera frame_camera(const ViewRequest& request, const Camera& camera, std::uint32_t frame) {
   return orbited(camera, request.orbit * static_cast<float>(frame));
+}
+
+// Returns the method with which specular occlusion is drawn: `slices` if the settings have none.
+AlcoveSpecular specular_model(const OcclusionSettings& settings) {
+  return settings.specular == ALCOVE_SPECULAR_NONE ? ALCOVE_SPECULAR_SLICES : settings.specular;
 }
 
 // The outputs of a frame.
@@ -56,11 +60,14 @@ enum class Outputs : std::uint8_t {
 // Reports progress: the fraction of all frames that have been drawn.
 class Run {
  public:
-  Run(FrameRenderer& renderer, const RenderRequest& request, const Camera& camera,
-      const OcclusionSettings& settings)
-      : renderer_(renderer), request_(request), camera_(camera), settings_(settings) {
-    if (!request.light.roughness.empty())
-      timed_light_.roughness = {request.light.roughness.front()};
+  Run(FrameRenderer& renderer, const ViewRequest& request, const Camera& camera,
+      const OcclusionSettings& settings, const IndirectRequest& light)
+      : renderer_(renderer),
+        request_(request),
+        camera_(camera),
+        settings_(settings),
+        light_(light) {
+    if (!light.roughness.empty()) timed_light_.roughness = {light.roughness.front()};
   }
 
   // Draws the frames and returns the median times of the last kTimedFrames frames. If the run is
@@ -102,7 +109,7 @@ class Run {
     request.occlusion = settings_;
     if (outputs == Outputs::all) request.occlusion.specular = specular_model(settings_);
     if (outputs != Outputs::timed) request.occlusion.bent_normal = true;
-    request.light = outputs == Outputs::all ? &request_.light : &timed_light_;
+    request.light = outputs == Outputs::all ? &light_ : &timed_light_;
     return request;
   }
 
@@ -120,9 +127,10 @@ class Run {
   }
 
   FrameRenderer& renderer_;
-  const RenderRequest& request_;
+  const ViewRequest& request_;
   Camera camera_;
   OcclusionSettings settings_;
+  const IndirectRequest& light_;
   bool one_run_ = settings_.specular == specular_model(settings_);
   std::uint32_t timed_frames_ = std::max(request_.frames, kTimedFrames + 1);
   IndirectRequest timed_light_;  // one roughness, and no light
@@ -132,25 +140,19 @@ class Run {
 
 }  // namespace
 
-AlcoveSpecular specular_model(const OcclusionSettings& settings) {
-  return settings.specular == ALCOVE_SPECULAR_NONE ? ALCOVE_SPECULAR_SLICES : settings.specular;
-}
-
-Result<Rendering> render(Session session, const RenderRequest& request) {
+Result<Rendering> render(Session session, const ViewRequest& request, IndirectRequest light) {
   Rendering result;
   result.scene = std::move(session.scene);
   result.load_seconds = session.load_seconds;
   result.settings = session.settings;
-  result.light = request.light;
+  result.light = std::move(light);
   Gpu& gpu = *session.gpu;
   result.device = gpu.device().properties().deviceName;
   result.driver = gpu.device().driver();
 
   result.camera = frame_camera(request, session.camera, request.frames - 1);
-  ALCOVE_TRY(const auto renderer,
-             FrameRenderer::create(gpu, result.scene, {request.width, request.height},
-                                   request.normals, 1, {request.guard_band, request.guard_band}));
-  Run run(*renderer, request, session.camera, result.settings);
+  ALCOVE_TRY(const auto renderer, FrameRenderer::create(gpu, result.scene, request));
+  Run run(*renderer, request, session.camera, result.settings, result.light);
   ALCOVE_TRY(result.costs, run.time());
   result.memory = renderer->memory();
   ALCOVE_TRY(result.images, run.draw());
@@ -188,9 +190,7 @@ namespace {
 
 // Converts directions to colours: each component from -1..1 to 0..1.
 Image<glm::vec3> as_colours(const Image<glm::vec3>& directions) {
-  Image<glm::vec3> colours = directions;
-  for (glm::vec3& colour : colours.pixels) colour = colour * 0.5f + 0.5f;
-  return colours;
+  return mapped([](glm::vec3 direction) { return direction * 0.5f + 0.5f; }, directions);
 }
 
 // Writes images to a folder, until one cannot be written.
@@ -213,6 +213,14 @@ struct ImageWriter {
   }
 };
 
+// Returns the file name, without its extension, of the specular occlusion of index `i`:
+// specular_occlusion, followed by for example _r30 if several roughness values were requested.
+std::string specular_name(const IndirectRequest& light, std::size_t i) {
+  std::string name = "specular_occlusion";
+  if (light.roughness.size() > 1) name.append("_").append(roughness_name(light, i));
+  return name;
+}
+
 }  // namespace
 
 std::string roughness_name(const IndirectRequest& light, std::size_t i) {
@@ -220,12 +228,6 @@ std::string roughness_name(const IndirectRequest& light, std::size_t i) {
   std::array<char, 32> percent{};
   std::snprintf(percent.data(), percent.size(), "r%02g", 100.0 * light.roughness[i]);
   return percent.data();
-}
-
-std::string specular_name(const IndirectRequest& light, std::size_t i) {
-  std::string name = "specular_occlusion";
-  if (light.roughness.size() > 1) name.append("_").append(roughness_name(light, i));
-  return name;
 }
 
 Result<void> write_images(const Rendering& rendering, const std::filesystem::path& folder) {

@@ -35,22 +35,9 @@ struct Rendering {
   std::string driver;
 };
 
-// Returns the method with which specular occlusion is drawn: `slices` if the settings have none.
-[[nodiscard]] AlcoveSpecular specular_model(const OcclusionSettings& settings);
-
-// The frames to draw, and the outputs of the last one.
-struct RenderRequest {
-  std::uint32_t width = 960;  // pixels
-  std::uint32_t height = 540;
-  std::uint32_t frames = 1;
-  float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
-  NormalSource normals = NormalSource::shading;
-  std::uint32_t guard_band = 0;  // pixels beyond each border
-  IndirectRequest light;
-};
-
-// Draws the frames and reads the last one back.
-[[nodiscard]] Result<Rendering> render(Session session, const RenderRequest& request);
+// Draws the frames and reads the last one back, with the outputs that `light` requests.
+[[nodiscard]] Result<Rendering> render(Session session, const ViewRequest& request,
+                                       IndirectRequest light);
 
 // Returns the distance along the view axis at each pixel, infinity at pixels of the sky.
 [[nodiscard]] Image<float> linear_depth(const Rendering& rendering);
@@ -64,10 +51,6 @@ struct RenderRequest {
 // Returns the name of the roughness for which the specular occlusion of index `i` was computed:
 // `materials`, or for example `r30` for a roughness of 0.3.
 [[nodiscard]] std::string roughness_name(const IndirectRequest& light, std::size_t i);
-
-// Returns the file name, without its extension, of the specular occlusion of index `i`:
-// specular_occlusion, followed by for example _r30 if several roughness values were requested.
-[[nodiscard]] std::string specular_name(const IndirectRequest& light, std::size_t i);
 
 // Writes the images of a rendering to a folder that exists.
 [[nodiscard]] Result<void> write_images(const Rendering& rendering,

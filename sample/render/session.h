@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "gpu/gpu.h"
 #include "gpu/occlusion.h"
+#include "render/normal_source.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "support/result.h"
@@ -25,16 +25,22 @@ struct Session {
   std::unique_ptr<Gpu> gpu;
 };
 
-// A view of a scene and the settings that its occlusion is drawn with.
-struct Shot {
+// How a view of a scene is drawn, whatever its camera.
+struct ViewRequest {
+  std::uint32_t width = 960;  // pixels
+  std::uint32_t height = 540;
+  NormalSource normals = NormalSource::shading;
+  std::uint32_t frames = 1;  // the last one counts
+  float orbit = 0.0f;        // angle in radians by which the camera orbits its target per frame
+  double guard_band = 0.0;   // percent of the height, beyond each border, which is not displayed
+};
+
+// A view that a command line reproduces. With 0 frames it has as many as the history averages.
+struct Shot : ViewRequest {
   Camera camera;
   OcclusionSettings settings;
   // Perceptual, [0,1], of every surface; null: the materials' own roughness.
-  std::optional<float> roughness;
-  std::uint32_t width = 0;  // pixels
-  std::uint32_t height = 0;
-  double guard_band = 0.0;   // percent of the height
-  std::uint32_t frames = 0;  // number of frames to draw; 0: as many as the history averages
+  std::optional<float> roughness = {};
 };
 
 // Opens the device, with the checks of the render graph if it has validation. Each call creates a

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "gpu/gpu.h"
 #include "gpu/occlusion.h"

@@ -119,15 +119,11 @@ Camera orbited(const Camera& camera, float angle) {
 
 Image<float> linear_depth(const Camera& camera, const Image<float>& depth_ndc) {
   const CameraMatrices matrices = camera_matrices(camera, depth_ndc.width, depth_ndc.height);
-  const float sky = camera.reversed_z ? 0.0f : 1.0f;
-  Image<float> depth(depth_ndc.width, depth_ndc.height, std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-    if (depth_ndc.pixels[i] != sky) {
-      depth.pixels[i] =
-          static_cast<float>(view_depth(matrices.clip_from_view, depth_ndc.pixels[i]));
-    }
-  }
-  return depth;
+  const auto linear = [&, sky = camera.reversed_z ? 0.0f : 1.0f](float depth) {
+    return depth == sky ? std::numeric_limits<float>::infinity()
+                        : static_cast<float>(view_depth(matrices.clip_from_view, depth));
+  };
+  return mapped(linear, depth_ndc);
 }
 
 }  // namespace alcove::sample

@@ -119,13 +119,15 @@ Result<EnvironmentImage> read_environment(const std::filesystem::path& file, boo
   }
 }
 
-}  // namespace
-
+// Generates a hazy sky over brown ground, brightest towards a low sun. It has no sun disc, because
+// that would be direct light. Its mean radiance is about 1.
 EnvironmentImage procedural_sky() {
   EnvironmentImage sky(512, 256);
   for (size_t i = 0; i < sky.pixels.size(); ++i) sky.pixels[i] = sky_radiance(direction_at(sky, i));
   return sky;
 }
+
+}  // namespace
 
 glm::vec3 direction_at(const EnvironmentImage& environment, size_t pixel) {
   const auto column = static_cast<double>(pixel % environment.width) + 0.5;

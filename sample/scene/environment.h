@@ -14,10 +14,6 @@ namespace alcove::sample {
 // least 0. The top row is +Y, the left edge is -Z, and a quarter of the width further right is +X.
 using EnvironmentImage = Image<glm::vec3>;
 
-// Generates a hazy sky over brown ground, brightest towards a low sun. It has no sun disc, because
-// that would be direct light. Its mean radiance is about 1.
-[[nodiscard]] EnvironmentImage procedural_sky();
-
 // Reads an OpenEXR file of at most 16384 pixels a side as 16-bit floats, and reduces it by a whole
 // factor to at most 2048. Its display window is the sphere, which is black where the file has no
 // data. An empty name gives the procedural sky. Radiance that is negative or NaN becomes 0, and

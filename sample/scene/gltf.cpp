@@ -9,7 +9,6 @@
 
 #include "scene/gltf_camera.h"
 #include "scene/gltf_files.h"
-#include "scene/gltf_images.h"
 #include "scene/gltf_material.h"
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_model.h"

@@ -11,7 +11,6 @@
 #include <iterator>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "scene/gltf_accessor.h"
 

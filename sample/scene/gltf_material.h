@@ -2,8 +2,6 @@
 
 #include <tiny_gltf.h>
 
-#include <string>
-
 #include "scene/scene.h"
 #include "support/result.h"
 

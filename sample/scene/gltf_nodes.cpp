@@ -16,13 +16,18 @@ namespace {
 
 constexpr const char* kCycle = "some of its nodes form a cycle; export it again";
 
-glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation,
-                   const glm::dvec3& scale) {
+// Returns the transform of a translation, a rotation and a scale; null: none.
+template <class Number>
+glm::dmat4 compose(const Number* translation, const Number* rotation, const Number* scale) {
   glm::dmat4 m(1.0);
-  const double length = glm::length(rotation);
-  if (length > 0.0) m = glm::mat4_cast(rotation / length);
-  for (int c = 0; c < 3; ++c) m[c] *= scale[c];
-  m[3] = glm::dvec4(translation, 1.0);
+  if (rotation != nullptr) {
+    const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);
+    if (const double length = glm::length(q); length > 0.0) m = glm::mat4_cast(q / length);
+  }
+  for (int c = 0; c < 3; ++c) {
+    if (scale != nullptr) m[c] *= static_cast<double>(scale[c]);
+    if (translation != nullptr) m[3][c] = translation[c];
+  }
   return m;
 }
 
@@ -30,12 +35,8 @@ glm::dmat4 compose(const glm::dvec3& translation, const glm::dquat& rotation,
 // scale.
 glm::dmat4 local_transform(const tinygltf::Node& node) {
   if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
-  const auto vector = [](const std::vector<double>& values, double otherwise) {
-    return values.empty() ? glm::dvec3(otherwise) : glm::make_vec3(values.data());
-  };
-  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-  if (const auto& q = node.rotation; !q.empty()) rotation = {q[3], q[0], q[1], q[2]};
-  return compose(vector(node.translation, 0.0), rotation, vector(node.scale, 1.0));
+  const auto first = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
+  return compose(first(node.translation), first(node.rotation), first(node.scale));
 }
 
 // Returns whether KHR_node_visibility hides the node. Its descendants are then hidden too.
@@ -241,16 +242,11 @@ Result<NodeInstances> NodeInstances::read(const tinygltf::Model& model, const ti
 }
 
 glm::dmat4 NodeInstances::at(size_t instance) const {
-  const auto vector = [&](const std::vector<float>& values, double otherwise) {
-    return values.empty() ? glm::dvec3(otherwise)
-                          : glm::dvec3(glm::make_vec3(&values[3 * instance]));
+  const auto of_instance = [&](const std::vector<float>& values, size_t components) {
+    return values.empty() ? nullptr : &values[components * instance];
   };
-  glm::dquat rotation(1.0, 0.0, 0.0, 0.0);
-  if (!rotations_.empty()) {
-    const float* q = &rotations_[4 * instance];
-    rotation = {q[3], q[0], q[1], q[2]};
-  }
-  return compose(vector(translations_, 0.0), rotation, vector(scales_, 1.0));
+  return compose(of_instance(translations_, 3), of_instance(rotations_, 4),
+                 of_instance(scales_, 3));
 }
 
 }  // namespace alcove::sample

@@ -2,7 +2,6 @@
 
 #include <tiny_gltf.h>
 
-#include <string>
 #include <vector>
 
 #include "support/glm.h"

@@ -3,7 +3,6 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "support/glm.h"

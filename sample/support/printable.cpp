@@ -1,7 +1,5 @@
 #include "support/printable.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <nlohmann/json.hpp>
 
 namespace alcove::sample {

@@ -36,6 +36,23 @@ Result<void> fill(const fs::path& file, const void* bytes, size_t size) {
   return Failure(std::strerror(written ? errno : reason));
 }
 
+// Writes a file of another name and gives it the name `file`, or removes it again unless `keeps`.
+using Write = std::function<Result<void>(const fs::path& temporary)>;
+Result<void> write(const fs::path& file, const Write& write_to, bool keeps) {
+  std::error_code reason;
+  if (fs::is_directory(file, reason))
+    return Failure("cannot write " + file.string() + ": it is a folder; give the name of a file");
+  const fs::path temporary = temporary_beside(file);
+  Result<void> outcome = write_to(temporary);
+  if (outcome && keeps) {
+    fs::rename(temporary, file, reason);
+    if (!reason) return {};
+    outcome = Failure(reason.message());
+  }
+  fs::remove(temporary, reason);
+  return outcome.map_error(with_prefix("cannot write " + file.string() + ": "));
+}
+
 }  // namespace
 
 Result<void> create_folder(const fs::path& folder) {
@@ -49,30 +66,12 @@ Result<void> create_folder(const fs::path& folder) {
 }
 
 Result<void> check_writable(const fs::path& file) {
-  std::error_code reason;
-  if (fs::is_directory(file, reason))
-    return Failure("cannot write " + file.string() + ": it is a folder; give the name of a file");
-  const fs::path temporary = temporary_beside(file);
-  const auto written = fill(temporary, "", 0);
-  fs::remove(temporary, reason);
-  if (written) return {};
-  return Failure("cannot write " + file.string() + ": " + written.error());
+  return write(
+      file, [](const fs::path& temporary) { return fill(temporary, "", 0); }, false);
 }
 
-Result<void> write_whole(const fs::path& file,
-                         const std::function<Result<void>(const fs::path&)>& write) {
-  std::error_code reason;
-  if (fs::is_directory(file, reason))
-    return Failure("cannot write " + file.string() + ": it is a folder; give the name of a file");
-  const fs::path temporary = temporary_beside(file);
-  Result<void> outcome = write(temporary);
-  if (outcome) {
-    fs::rename(temporary, file, reason);
-    if (!reason) return {};
-    outcome = Failure(reason.message());
-  }
-  fs::remove(temporary, reason);
-  return Failure("cannot write " + file.string() + ": " + outcome.error());
+Result<void> write_whole(const fs::path& file, const Write& write_to) {
+  return write(file, write_to, true);
 }
 
 Result<void> write_bytes(const fs::path& file, const void* bytes, size_t size) {

@@ -1,7 +1,6 @@
 #include "viewer/presenter.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "alcove/framegraph/access.h"
 

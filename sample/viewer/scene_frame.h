@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "gpu/gpu.h"
 #include "render/gbuffer.h"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <utility>
 
 #include "scene/framing.h"
 #include "support/image_io.h"
@@ -202,9 +201,11 @@ Result<void> SceneView::draw_and_read() {
 Result<void> SceneView::write() {
   ALCOVE_TRY(const auto path, write_screenshot(request_.screenshots, screenshot_));
   const std::string file = path.string();
-  const std::string command =
-      request_.command({state_.camera, good_.settings, good_.roughness, screenshot_.width,
-                        screenshot_.height, state_.guard_band});
+  const std::string command = request_.command(
+      {{screenshot_.width, screenshot_.height, request_.normals, 0, 0.0f, state_.guard_band},
+       state_.camera,
+       good_.settings,
+       good_.roughness});
   std::cout << file << "\n" << command << std::endl;
   window_->copy_to_clipboard(command);
   facts_.message = file + " is written; the clipboard has: " + command;

@@ -23,14 +23,9 @@
 namespace alcove::sample {
 
 // The initial state of a window, and functions of the program that the window calls.
-struct SceneViewRequest {
-  std::uint32_t width = 960;  // width of the window in pixels
-  std::uint32_t height = 540;
+struct SceneViewRequest : ViewRequest {
   std::string title;
-  float orbit = 0.0f;  // angle in radians by which the camera orbits its target per frame
-  NormalSource normals = NormalSource::shading;
   std::optional<float> roughness;  // perceptual roughness of every surface; null: of its material
-  double guard_band = 0.0;         // percent of the height
   std::filesystem::path environment;  // .exr; empty: the procedural sky
   std::filesystem::path screenshots;  // folder for screenshots; empty: the current folder
   // Loads the scene and opens a device with these instance extensions.

@@ -1,8 +1,6 @@
 #include "viewer/window.h"
 
-// GLFW declares its Vulkan functions only if Vulkan's header was included before.
-#include <vulkan/vulkan.h>
-
+// GLFW declares its Vulkan functions only if Vulkan's header, which window.h has, comes before.
 #include <GLFW/glfw3.h>
 
 #include <cstdint>

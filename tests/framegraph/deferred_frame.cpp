@@ -116,8 +116,7 @@ class DeferredFrame {
   Buffer light_tiles_;
 };
 
-}  // namespace
-
+// Rounds up to pages of 64 KiB.
 MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags, bool) {
   constexpr VkDeviceSize kPage = 65536;
   const VkDeviceSize texel = record.format == VK_FORMAT_R8_UNORM              ? 1
@@ -128,6 +127,8 @@ MemoryRequirements paged_requirements(const void*, const ResourceRecord& record,
   needed.alignment = kPage;
   return needed;
 }
+
+}  // namespace
 
 void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t height) {
   DeferredFrame(graph, width, height).declare();

@@ -12,10 +12,8 @@ namespace alcove::framegraph {
 
 void declare_deferred_frame(Graph& graph, std::uint32_t width, std::uint32_t height);
 
-// Returns memory requirements rounded up to pages of 64 KiB.
-MemoryRequirements paged_requirements(const void*, const ResourceRecord& record, VkFlags, bool);
-
-// Declares the frame at 1080p and compiles it with these requirements, for which it sets `limits`.
+// Declares the frame at 1080p and compiles it with memory requirements that are rounded up to pages
+// of 64 KiB, for which it sets `limits`.
 tl::expected<Plan, Errors> compile_deferred_frame(Graph& graph, Limits& limits);
 
 }  // namespace alcove::framegraph

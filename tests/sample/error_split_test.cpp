@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "gpu_test.h"
 #include "scene/builtin_scene.h"
@@ -19,17 +18,12 @@ class ErrorSplitTest : public GpuTest {
  protected:
   // The scene's first camera.
   static StaticSetup setup_of(const Scene& scene, std::uint32_t frames) {
-    return {scene.cameras.front(), 160, 90, frames, NormalSource::geometric};
-  }
-  FrameImages draw(const Scene& scene, const StaticSetup& setup,
-                   const OcclusionSettings& settings) {
-    auto images = draw_static(gpu(), scene, setup, settings);
-    EXPECT_TRUE(images) << images.error();
-    return std::move(*images);
+    return {{160, 90, NormalSource::geometric, frames}, scene.cameras.front()};
   }
   TracedTruth truth_of(const Scene& scene, const OcclusionSettings& settings) {
     const StaticSetup setup = setup_of(scene, 1);
-    return trace_truth(scene, setup.camera, settings.radius, draw(scene, setup, settings));
+    return trace_truth(scene, setup.camera, settings.radius,
+                       draw_static(gpu(), scene, setup, settings).value());
   }
   ErrorSplit split(const Scene& scene, const OcclusionSettings& settings, std::uint32_t frames) {
     const TracedTruth truth = truth_of(scene, settings);
@@ -75,7 +69,7 @@ TEST_F(ErrorSplitTest, NoiseIsTheErrorThatTheMeanOfManyFramesLacks) {
   Image<float> mean(setup.width, setup.height);
   double single = 0;
   for (; setup.first_frame < kFrames; ++setup.first_frame) {
-    const Image<float> frame = draw(scene, setup, settings).visibility;
+    const Image<float> frame = draw_static(gpu(), scene, setup, settings).value().visibility;
     single += std::pow(truth.rmse(frame), 2) / kFrames;
     for (std::size_t i = 0; i < mean.pixels.size(); ++i)
       mean.pixels[i] += frame.pixels[i] / kFrames;

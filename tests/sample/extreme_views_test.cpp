@@ -79,7 +79,7 @@ TEST(ExtremeViews, OutputsOfRandomExtremeViewsAreFiniteAndInRange) {
   ASSERT_TRUE(gpu);
   const Scene scene = builtin_scene();
   const VkExtent2D size{48, 27};
-  auto renderer = FrameRenderer::create(*gpu, scene, size, NormalSource::shading);
+  auto renderer = FrameRenderer::create(*gpu, scene, {size.width, size.height});
   ASSERT_TRUE(renderer) << renderer.error();
   for (std::uint32_t seed = 1; seed <= view_count(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -112,7 +112,7 @@ TEST(ExtremeViews, OpenGroundIsUnoccludedInANarrowViewOverALargeDepthRange) {
       builder.quad({x, 0, z}, {x, 0, z + 100}, {x + 100, 0, z + 100}, {x + 100, 0, z});
   const Scene scene = builder.finish("ground");
   const VkExtent2D size{160, 90};
-  auto renderer = FrameRenderer::create(*gpu, scene, size, NormalSource::shading);
+  auto renderer = FrameRenderer::create(*gpu, scene, {size.width, size.height});
   ASSERT_TRUE(renderer) << renderer.error();
   Camera camera = scene_camera("high", {0, 60, 0}, {0, 0, -500}, 3.0f, 5000.0f);
   camera.near_plane = 0.01f;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "evaluate/errors.h"
@@ -18,21 +17,15 @@ namespace {
 
 class FeaturesTest : public GpuTest {
  protected:
-  static FrameImages draw(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-                          const OcclusionSettings& settings) {
-    auto images = draw_static(gpu, scene, setup, settings);
-    EXPECT_TRUE(images) << images.error();
-    return std::move(*images);
-  }
   FrameImages draw(const OcclusionSettings& settings) {
-    return draw(gpu(), scene_, setup_, settings);
+    return draw_static(gpu(), scene_, setup_, settings).value();
   }
   TracedTruth truth_of(const FrameImages& images) const {
     return trace_truth(scene_, setup_.camera, base_.radius, images);
   }
 
   const Scene scene_ = builtin_scene();
-  StaticSetup setup_{scene_.cameras.front(), 240, 135, 12, NormalSource::geometric};
+  StaticSetup setup_{{240, 135, NormalSource::geometric, 12}, scene_.cameras.front()};
   const OcclusionSettings base_ = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, scene_.suggested_radius);
 };
 
@@ -91,8 +84,7 @@ TEST_F(FeaturesTest, BackFacesAndSecondDepthLayerAreRenderedIfTheSettingsNeedThe
   backs.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   OcclusionSettings layers = base_;
   layers.depth_layers = 2;
-  const auto renderer =
-      FrameRenderer::create(gpu(), scene_, {setup_.width, setup_.height}, setup_.normals);
+  const auto renderer = FrameRenderer::create(gpu(), scene_, setup_);
   ASSERT_TRUE(renderer) << renderer.error();
   FrameRequest request;
   request.view = gbuffer_view(setup_.camera, setup_.camera, {setup_.width, setup_.height});
@@ -117,8 +109,7 @@ TEST_F(FeaturesTest, KeptGbuffersGiveTheImagesOfGbuffersThatAreDrawnAgain) {
   setup_.orbit = 0.05f;
   std::vector<Image<float>> images;
   for (const std::size_t kept_views : {1u, 3u}) {
-    const auto renderer = FrameRenderer::create(gpu(), scene_, {setup_.width, setup_.height},
-                                                setup_.normals, kept_views);
+    const auto renderer = FrameRenderer::create(gpu(), scene_, setup_, kept_views);
     ASSERT_TRUE(renderer) << renderer.error();
     for (int round = 0; round < 2; ++round) {
       const auto drawn = draw_frames(**renderer, setup_, base_);
@@ -135,7 +126,7 @@ TEST_F(FeaturesTest, ImageOfTwiceTheSizeIsNearlyTheSame) {
   large.width *= 2;
   large.height *= 2;
   const FrameImages images = draw(base_);
-  const FrameImages larger = draw(gpu(), scene_, large, base_);
+  const FrameImages larger = draw_static(gpu(), scene_, large, base_).value();
   const Image<float> depth = linear_depth(setup_.camera, images.depth_ndc);
   const Image<float> larger_depth = linear_depth(setup_.camera, larger.depth_ndc);
   Image<float> mean(setup_.width, setup_.height);

@@ -56,22 +56,17 @@ TEST(GltfSkin, MissingInverseBindMatricesAreTheIdentity) {
   EXPECT_LT(glm::distance(corners(parsed(maker.gltf()))[0], glm::vec3(10, 0, 5)), 1e-5f);
 }
 
-TEST(GltfSkin, JointOrSkinThatDoesNotExistIsRefused) {
-  GltfMaker maker = skinned_triangle();
-  maker.json["skins"][0]["joints"] = {1};
-  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("joint"));
-  maker = skinned_triangle();
-  maker.json["skins"][0]["joints"] = {1, 77};
-  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("77"));
-  maker = skinned_triangle();
-  maker.json["nodes"][0]["skin"] = 3;
-  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("skin 3"));
-}
-
-TEST(GltfSkin, FewerInverseBindMatricesThanJointsAreRefused) {
-  GltfMaker maker = skinned_triangle();
-  maker.json["accessors"].back()["count"] = 1;
-  EXPECT_THAT(refusal(maker.gltf()), HasSubstr("inverse bind"));
+TEST(GltfSkin, JointsSkinsAndMatricesThatDoNotExistAreRefused) {
+  using nlohmann::json;
+  const auto expect_refusal = [](auto change, const char* sentence) {
+    GltfMaker maker = skinned_triangle();
+    change(maker.json);
+    EXPECT_THAT(refusal(maker.gltf()), HasSubstr(sentence));
+  };
+  expect_refusal([](json& file) { file["skins"][0]["joints"] = {1}; }, "joint");
+  expect_refusal([](json& file) { file["skins"][0]["joints"] = {1, 77}; }, "77");
+  expect_refusal([](json& file) { file["nodes"][0]["skin"] = 3; }, "skin 3");
+  expect_refusal([](json& file) { file["accessors"].back()["count"] = 1; }, "inverse bind");
 }
 
 TEST(GltfInstances, NodesThatDrawTheSameMeshBecomeInstancesOfIt) {
@@ -210,14 +205,18 @@ TEST(GltfNodes, CycleOutsideOfTheSceneMattersOnlyIfItHasAJointOfTheScene) {
   EXPECT_THAT(refusal(maker.gltf()), HasSubstr("form a cycle"));
 }
 
-TEST(GltfCompression, ViewThatCannotBeDecompressedIsReplacedByItsFallback) {
-  GltfMaker maker = GltfMaker::triangle();
-  maker.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = {
+TEST(GltfCompression, ViewAndPrimitiveThatCannotBeDecompressedAreReplacedByTheirFallback) {
+  GltfMaker view = GltfMaker::triangle(), primitive = view;
+  view.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = {
       {"buffer", 0}, {"byteOffset", 0},      {"byteLength", 36}, {"byteStride", 12},
       {"count", 3},  {"mode", "ATTRIBUTES"}, {"filter", "COLOR"}};
-  const Scene scene = parsed(maker.gltf());
-  EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("fallback")));
+  primitive.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
+  for (const GltfMaker& maker : {view, primitive}) {
+    const Scene scene = parsed(maker.gltf());
+    EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("fallback")));
+  }
 }
 
 // A quad whose positions and indices are compressed. The positions are 16-bit, normalised.
@@ -286,15 +285,6 @@ TEST(GltfCompression, DamagedDracoPrimitivesAreRefused) {
     extension["attributes"]["NORMAL"] = 7;
     EXPECT_THAT(refusal(maker.gltf()), testing::HasSubstr("a Draco mesh whose NORMAL is missing"));
   }
-}
-
-TEST(GltfCompression, DracoPrimitiveThatCannotBeDecompressedIsReplacedByItsFallback) {
-  GltfMaker maker = GltfMaker::triangle();
-  maker.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
-      {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
-  const Scene scene = parsed(maker.gltf());
-  EXPECT_EQ(corners(scene)[1], glm::vec3(1, 0, 0));
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::HasSubstr("fallback")));
 }
 
 // Ten triangles around the origin, and a camera, moved by `offset`.

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "alcove/framegraph/verify.h"
 #include "gpu/gpu.h"

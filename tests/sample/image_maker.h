@@ -9,8 +9,6 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
-#include <string>
 #include <vector>
 
 namespace alcove::sample {

@@ -44,7 +44,7 @@ TEST_F(LightTest, UnoccludedLightAgreesWithTheIntegralOfTheBrdfOverTheSky) {
   EnvironmentImage sky(256, 128);
   for (std::uint32_t i = 0; i < sky.pixels.size(); ++i)
     sky.pixels[i] = glm::exp(3.0f * direction_at(sky, i));
-  const auto renderer = FrameRenderer::create(gpu(), scene, {kWidth, kHeight}, {}).value();
+  const auto renderer = FrameRenderer::create(gpu(), scene, {kWidth, kHeight}).value();
   for (const float roughness : {0.3f, 0.6f, 1.0f}) {
     const IndirectRequest light{{roughness}, sky, true};
     FrameRequest request{.view = gbuffer_view(camera, camera, {kWidth, kHeight}),

@@ -15,7 +15,7 @@ class Motion : public GpuTest {
   static MotionSetup setup() {
     const float radius = builtin_scene().suggested_radius;
     return {.occlusion = OcclusionSettings(ALCOVE_QUALITY_MEDIUM, radius),
-            .view = {.width = 240, .height = 135, .normals = NormalSource::geometric},
+            .view = {{240, 135, NormalSource::geometric}, {}},
             .truth = {.spp = 64, .use_cache = false}};
   }
   static MotionPath path_of(MotionKind kind, std::uint32_t frames) {

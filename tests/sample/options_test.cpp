@@ -49,7 +49,7 @@ TEST(Options, CommandLineWithManyOptionsIsParsed) {
   EXPECT_EQ(options->view.reversed_z, true);
   EXPECT_TRUE(std::isinf(*options->view.far_plane));
   EXPECT_EQ(options->occlusion.quality, ALCOVE_QUALITY_HIGH);
-  EXPECT_EQ(options->occlusion.normals, NormalSource::geometric);
+  EXPECT_EQ(options->view.normals, NormalSource::geometric);
   EXPECT_EQ(options->occlusion.set.size(), 2u);
   EXPECT_EQ(options->occlusion.set[1].value, 5u);
   EXPECT_EQ(options->occlusion.roughness.size(), 3u);
@@ -62,7 +62,7 @@ TEST(Options, OptionsOfSingleCommandsAreParsed) {
   EXPECT_EQ(parse("view --frames 3")->view.frames, 3u);
   EXPECT_EQ(parse("motion --path dolly --frames 24")->path, MotionKind::dolly);
   EXPECT_EQ(parse("recommend step --budget-ms 0.5 --second-layer 0")->second_layer_ms, 0.0);
-  EXPECT_EQ(parse("compare --guard-band 7.5")->occlusion.guard_band, 7.5);
+  EXPECT_EQ(parse("compare --guard-band 7.5")->view.guard_band, 7.5);
   EXPECT_EQ(parse("recommend --tolerance 0.05 --clock processor")->clock, Clock::processor);
   EXPECT_EQ(parse("report step corner")->scenes, (std::vector<std::string>{"step", "corner"}));
   EXPECT_EQ(*parse("render --ortho-height 4 --near -20 --far -0.5")->view.near_plane, -20.0f);

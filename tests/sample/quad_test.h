@@ -40,7 +40,7 @@ class QuadTest : public GpuTest {
  protected:
   FrameImages draw(const Scene& scene, std::uint32_t size, const Camera& camera = camera_at(3.0f),
                    NormalSource normals = NormalSource::shading) {
-    auto renderer = FrameRenderer::create(gpu(), scene, {size, size}, normals);
+    auto renderer = FrameRenderer::create(gpu(), scene, {size, size, normals});
     EXPECT_TRUE(renderer) << renderer.error();
     const FrameRequest request{.view = gbuffer_view(camera, camera, {size, size}),
                                .occlusion = OcclusionSettings(ALCOVE_QUALITY_LOW, 0.2f)};

@@ -36,6 +36,7 @@ Shot some_shot() {
   shot.settings = OcclusionSettings(ALCOVE_QUALITY_HIGH, 0.7f);
   shot.width = 641;
   shot.height = 359;
+  shot.frames = 0;
   return shot;
 }
 
@@ -55,12 +56,13 @@ void expect_round_trip(const Options& options, const Shot& shot) {
   ASSERT_TRUE(read) << read.error().text;
   EXPECT_EQ(read->command, Command::render);
   const auto given = [](const Options& o) {
-    return std::tuple(o.scene, o.environment, o.occlusion.normals, o.device, o.materials.cut_blends,
+    return std::tuple(o.scene, o.environment, o.device, o.materials.cut_blends,
                       o.materials.both_sides);
   };
   EXPECT_EQ(given(*read), given(options));
   EXPECT_EQ(read->view.frames, shot.frames > 0 ? shot.frames : shot.settings.history_frames);
-  EXPECT_EQ(read->occlusion.guard_band, shot.guard_band);
+  EXPECT_EQ(read->view.guard_band, shot.guard_band);
+  EXPECT_EQ(read->view.normals, shot.normals);
   EXPECT_EQ(read->view.width, shot.width);
   EXPECT_EQ(read->view.height, shot.height);
   const Scene scene = builtin_scene();
@@ -85,7 +87,7 @@ TEST(PrintedRenderCommand, PrintedCommandParsesBackToTheSameShotAndOptions) {
       [](Options&, Shot&) {},
       [](Options& o, Shot&) { o.scene = "a scene's file.glb"; },
       [](Options& o, Shot&) { o.environment = "sky.exr"; },
-      [](Options& o, Shot&) { o.occlusion.normals = NormalSource::geometric; },
+      [](Options&, Shot& s) { s.normals = NormalSource::geometric; },
       [](Options& o, Shot&) { o.device = 3; },
       [](Options& o, Shot&) { o.materials.cut_blends = true; },
       [](Options& o, Shot&) { o.materials.both_sides = true; },

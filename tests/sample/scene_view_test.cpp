@@ -1,17 +1,17 @@
 // Tests of the window. They need a display, which ctest starts for them, and run under the
 // validation layers.
-#include "cli/scene_view_request.h"
+#include "cli/commands.h"
 
 #include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "gltf_maker.h"
 #include "render/frame_renderer.h"
 #include "temporary_folder.h"
+#include "viewer/scene_view.h"
 
 namespace alcove::sample {
 namespace {
@@ -30,10 +30,12 @@ class ViewerWindowTest : public testing::Test {
     open();
   }
   void TearDown() override {
-    if (view_) {
-      const auto valid = check_validation(view_->gpu());
-      EXPECT_TRUE(valid) << valid.error();
-    }
+    if (view_) expect_valid();
+  }
+
+  void expect_valid() const {
+    const auto valid = check_validation(view_->gpu());
+    ASSERT_TRUE(valid) << valid.error().substr(0, 600);
   }
 
   void open() {
@@ -92,9 +94,8 @@ TEST_F(ViewerWindowTest, ShownImageAndSettingsMayChangeWhileFramesAreInFlight) {
       view_->state().comparison = static_cast<Comparison>(i % 2);
       view_->state().settings.history_frames = i % 3 == 0 ? 0 : 8;
       draw(frames);
-      const auto valid = check_validation(view_->gpu());
-      ASSERT_TRUE(valid) << kPictureNames[i] << " after " << frames << ": "
-                         << valid.error().substr(0, 600);
+      SCOPED_TRACE(kPictureNames[i]);
+      ASSERT_NO_FATAL_FAILURE(expect_valid());
     }
   }
 }
@@ -107,8 +108,8 @@ TEST_F(ViewerWindowTest, ShownVisibilityEqualsThatOfTheOffscreenRenderer) {
   const auto gpu = open_gpu({options_.device, options_.validation});
   ASSERT_TRUE(gpu) << gpu.error();
   const VkExtent2D size{seen.width, seen.height};
-  const auto renderer =
-      FrameRenderer::create(**gpu, view_->scene(), size, options_.occlusion.normals);
+  const auto renderer = FrameRenderer::create(**gpu, view_->scene(),
+                                              {size.width, size.height, options_.view.normals});
   ASSERT_TRUE(renderer) << renderer.error();
   FrameRequest request;
   request.view = gbuffer_view(state.camera, state.camera, size);
@@ -155,7 +156,7 @@ TEST_F(ViewerWindowTest, ComparisonWithKeptSettingsMayUseBackFacesAndASecondDept
 }
 
 TEST_F(ViewerWindowTest, ImagesAreDrawnWithAMovingCameraAndNormalsFromDepth) {
-  options_.occlusion.normals = NormalSource::depth;
+  options_.view.normals = NormalSource::depth;
   options_.view.orbit = 0.02f;
   ASSERT_NO_FATAL_FAILURE(open());
   for (const Picture picture : {Picture::bent_normal, Picture::lit, Picture::motion}) {
@@ -173,7 +174,7 @@ TEST_F(ViewerWindowTest, PassTimesAndMemoryOfTheFrameAreReported) {
 
 // The view beside it and the lighting have passes of the same names.
 TEST_F(ViewerWindowTest, PassesOfTheViewWithTheChosenSettingsAreMarkedInTheTimes) {
-  options_.occlusion.normals = NormalSource::depth;
+  options_.view.normals = NormalSource::depth;
   ASSERT_NO_FATAL_FAILURE(open());
   view_->state().picture = Picture::lit;
   view_->state().settings.specular = ALCOVE_SPECULAR_TABLE;
@@ -252,8 +253,7 @@ TEST_F(ViewerWindowTest, SceneMayBeReplacedWhileFramesAreInFlight) {
     drop(view_->window(), triangle);
     draw(1);
     ASSERT_EQ(view_->scene().name, "dropped");
-    const auto valid = check_validation(view_->gpu());
-    ASSERT_TRUE(valid) << "drop " << i << ": " << valid.error().substr(0, 600);
+    ASSERT_NO_FATAL_FAILURE(expect_valid());
   }
 }
 

@@ -1,12 +1,8 @@
 #include "evaluate/sweep.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "gpu_cost/presets.h"

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "evaluate/errors.h"
@@ -26,9 +25,8 @@ struct TracedTruth {
 inline TracedTruth trace_truth(const Scene& scene, const Camera& camera, float radius,
                                const FrameImages& images) {
   const Image<float> depth = linear_depth(camera, images.depth_ndc);
-  TracedTruth truth{{}, Mask(depth.width, depth.height)};
-  std::ranges::transform(depth.pixels, truth.surfaces.pixels.begin(),
-                         [](float z) { return std::isfinite(z) ? 1 : 0; });
+  const auto is_surface = [](float z) { return static_cast<std::uint8_t>(std::isfinite(z)); };
+  TracedTruth truth{{}, mapped(is_surface, depth)};
   const auto rays = RayScene::create(scene);
   EXPECT_TRUE(rays);
   truth.visibility = occlusion_truth(*rays, surface_points(*rays, camera, images.normal_ws, depth),

@@ -24,7 +24,7 @@ Result<LabelledSettings> labelled_settings(const Options& options, AlcoveQuality
              occlusion_settings(one, 0.5f));  // no instruction depends on the radius
   labelled.inputs.width = options.view.width;
   labelled.inputs.height = options.view.height;
-  labelled.inputs.normals = options.occlusion.normals != NormalSource::depth;
+  labelled.inputs.normals = options.view.normals != NormalSource::depth;
   for (const SettingChange& change : options.occlusion.set)
     labelled.label += fmt::format(" {}", change_text(change));
   return labelled;

@@ -115,15 +115,11 @@ Result<MeasuredFrame> measure(const Session& session, const Options& options,
                               const LabelledSettings& settings) {
   const CostInputs& inputs = settings.inputs;
   ALCOVE_TRY(const auto gpu, open_gpu(session.device));
-  ALCOVE_TRY(const auto renderer,
-             FrameRenderer::create(*gpu, session.scene, {inputs.width, inputs.height},
-                                   options.occlusion.normals));
   constexpr std::uint32_t kWarmUp = 4;
-  const StaticSetup setup{.camera = session.camera,
-                          .width = inputs.width,
-                          .height = inputs.height,
-                          .frames = kWarmUp + options.view.frames,
-                          .orbit = kOrbit};
+  const StaticSetup setup{
+      {inputs.width, inputs.height, options.view.normals, kWarmUp + options.view.frames, kOrbit},
+      session.camera};
+  ALCOVE_TRY(const auto renderer, FrameRenderer::create(*gpu, session.scene, setup));
   std::vector<std::string> order;
   std::map<std::string, std::vector<double>> times;
   for (std::uint32_t i = 0; i < setup.frames; ++i) {

@@ -96,8 +96,8 @@ Result<void> run_motion(const Options& options) {
   const float aspect =
       static_cast<float>(options.view.width) / static_cast<float>(options.view.height);
   ALCOVE_TRY(const auto start, motion_start(rays, session.camera, aspect, session.settings.radius));
-  const MotionSetup setup{session.settings, static_setup(options, session.camera),
-                          truth_options(options)};
+  const StaticSetup view{options.view, session.camera};
+  const MotionSetup setup{session.settings, view, truth_options(options)};
   Json report;
   report["device"] = session.gpu->device().properties().deviceName;
   report["settings"] = to_json(session.settings);

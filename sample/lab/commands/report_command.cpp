@@ -57,9 +57,8 @@ class ScenePage {
     std::cout << fmt::format("  {:46}{:9.4f}{:10.4f}{:9.4f}{:11.4f}{:11.4f}\n", name,
                              of.rmse[kMoving], of.rmse[kStanding], of.rmse[kFirst], of.ms[kMoving],
                              of.ms[kStanding]);
-    const Shot shot{session_.camera,     of.choice.settings,   std::nullopt,
-                    options_.view.width, options_.view.height, of.choice.guard_band,
-                    options_.view.frames};
+    Shot shot{options_.view, session_.camera, of.choice.settings};
+    shot.guard_band = of.choice.guard_band;
     points_.push_back({{"name", name},
                        {"ms", of.ms[kMoving]},
                        {"rmse", of.rmse[kMoving]},
@@ -138,7 +137,7 @@ class ScenePage {
   // The causes of the error of `medium`.
   Result<void> add_split() {
     ALCOVE_TRY(const ErrorSplit split,
-               split_error(*session_.gpu, session_.scene, static_setup(options_, session_.camera),
+               split_error(*session_.gpu, session_.scene, {options_.view, session_.camera},
                            OcclusionSettings(ALCOVE_QUALITY_MEDIUM, session_.settings.radius),
                            errors_.truths().scene.visibility, errors_.truths().surfaces));
     json_["split"] = to_json(split);
@@ -193,8 +192,8 @@ Result<void> run_report(const Options& options) {
     data["device"] = session.gpu->device().properties().deviceName;
     data["clock"] = clock_text(options, session);
     ALCOVE_TRY(const auto times, setting_times(one, session));
-    ALCOVE_TRY(auto errors, SituationErrors::create(session, static_setup(one, session.camera),
-                                                    truth_options(one)));
+    ALCOVE_TRY(auto errors,
+               SituationErrors::create(session, {one.view, session.camera}, truth_options(one)));
     ALCOVE_TRY(auto page, ScenePage(one, session, times, std::move(errors)).make());
     report["scenes"].push_back({{"name", page["name"]}, {"points", page["points"]}});
     data["scenes"].push_back(std::move(page));

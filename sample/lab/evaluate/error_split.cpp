@@ -40,7 +40,9 @@ class Splitter {
   Result<ErrorSplit> split(const StaticSetup& setup, const OcclusionSettings& settings);
 
  private:
-  Result<Image<float>> draw(const StaticSetup& setup, const OcclusionSettings& settings);
+  // `guard_band`, in pixels, replaces that of the setup.
+  Result<Image<float>> draw(const StaticSetup& setup, const OcclusionSettings& settings,
+                            std::optional<VkExtent2D> guard_band = {});
   Result<void> add_noise(const StaticSetup& setup, const OcclusionSettings& settings);
   // Adds a cause whose remedy changes the current visibility to `after`. Returns whether it lowers
   // the error.
@@ -58,10 +60,11 @@ class Splitter {
   Progress progress_ = print_progress("causes of the error");
 };
 
-Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings) {
+Result<Image<float>> Splitter::draw(const StaticSetup& setup, const OcclusionSettings& settings,
+                                    std::optional<VkExtent2D> guard_band) {
   constexpr int kDrawings = 6;
   progress_(static_cast<double>(drawn_++) / kDrawings);
-  return draw_static(gpu_, scene_, setup, settings).map([](FrameImages images) {
+  return draw_static(gpu_, scene_, setup, settings, guard_band).map([](FrameImages images) {
     return std::move(images.visibility);
   });
 }
@@ -72,14 +75,12 @@ Result<void> Splitter::add_noise(const StaticSetup& setup, const OcclusionSettin
   // An odd number of frames, after which the golden pattern has turned the directions by a quarter
   // of their period (and by .19 if it moves), so that the noise of both is hardly correlated.
   other_setup.first_frame += 1023;
-  ALCOVE_TRY(Image<float> other, draw(other_setup, settings));
+  ALCOVE_TRY(const Image<float> other, draw(other_setup, settings));
   const double noise = 0.5 * mean_squared_error(own, other, surfaces_);
   whole_error_ = std::max(mean_squared_error(own, truth_, surfaces_), 1e-12);
   split_.rmse = std::sqrt(whole_error_);
   current_error_ = whole_error_ - noise;
-  current_ = std::move(other);
-  for (std::size_t i = 0; i < current_.pixels.size(); ++i)
-    current_.pixels[i] = 0.5f * (current_.pixels[i] + own.pixels[i]);
+  current_ = mapped([](float a, float b) { return 0.5f * (a + b); }, other, own);
   split_.causes.push_back({"noise", "noise", noise / whole_error_, own, current_});
   return {};
 }
@@ -117,8 +118,8 @@ Result<ErrorSplit> Splitter::split(const StaticSetup& setup, const OcclusionSett
   OcclusionSettings back_faces = best;
   back_faces.thickness_limit = ALCOVE_THICKNESS_LIMIT_BACK_FACES;
   ALCOVE_TRY_VOID(try_settings("back_faces", "thickness, which back faces tell", back_faces));
-  averaged.guard_band = {setup.width / 2, setup.height / 2};
-  ALCOVE_TRY(Image<float> wide, draw(averaged, best));
+  ALCOVE_TRY(Image<float> wide,
+             draw(averaged, best, VkExtent2D{setup.width / 2, setup.height / 2}));
   add("outside", "occluders outside the image", std::move(wide));
   split_.causes.push_back({"rest", "the rest", current_error_ / whole_error_, current_, truth_});
   return std::move(split_);

@@ -95,14 +95,11 @@ OpenSurfaceSummary open_surfaces(const Image<float>& result, const Image<float>&
 }
 
 Image<glm::vec3> error_colours(const Image<float>& result, const Image<float>& truth) {
-  Image<glm::vec3> colours(result.width, result.height);
-  for (std::size_t i = 0; i < colours.pixels.size(); ++i) {
-    const float error = 4.0f * (result.pixels[i] - truth.pixels[i]);
-    const float less = std::fmin(std::fabs(error), 1.0f);
-    colours.pixels[i] = error < 0.0f ? glm::vec3(1.0f, 1.0f - less, 1.0f - less)
-                                     : glm::vec3(1.0f - less, 1.0f - less, 1.0f);
-  }
-  return colours;
+  const auto colour = [](float a, float b) {
+    const float error = 4.0f * (a - b), rest = 1.0f - std::fmin(std::fabs(error), 1.0f);
+    return error < 0.0f ? glm::vec3(1.0f, rest, rest) : glm::vec3(rest, rest, 1.0f);
+  };
+  return mapped(colour, result, truth);
 }
 
 std::string error_row(std::string_view name, double rmse, double bias) {

@@ -12,20 +12,6 @@
 namespace alcove::sample {
 namespace {
 
-Image<glm::vec3> bounced(const Image<float>& visibility, const Image<glm::vec3>& albedo) {
-  Image<glm::vec3> result(visibility.width, visibility.height);
-  for (std::size_t i = 0; i < result.pixels.size(); ++i)
-    result.pixels[i] = maths::multi_bounce(visibility.pixels[i], albedo.pixels[i]);
-  return result;
-}
-
-Image<glm::vec3> grey(const Image<float>& values) {
-  Image<glm::vec3> result(values.width, values.height);
-  for (std::size_t i = 0; i < result.pixels.size(); ++i)
-    result.pixels[i] = glm::vec3(values.pixels[i]);
-  return result;
-}
-
 // Returns the specular occlusion that the table has for visibility and bent normal.
 float specular_by_table(float visibility, const glm::vec3& bent, const glm::vec3& normal,
                         const glm::vec3& view, float roughness) {
@@ -96,9 +82,11 @@ IndirectErrors measure_indirect_errors(const Rendering& rendering, const Truths&
   const Image<float>& visibility = truths.scene.visibility;
   IndirectErrors errors;
   errors.bounced = compare_images(images.multi_bounce, light.interreflection, light.sampled);
-  errors.bounced_truth =
-      compare_images(bounced(visibility, images.albedo), light.interreflection, light.sampled);
-  errors.unbounced_truth = compare_images(grey(visibility), light.interreflection, light.sampled);
+  errors.bounced_truth = compare_images(mapped(maths::multi_bounce, visibility, images.albedo),
+                                        light.interreflection, light.sampled);
+  const auto grey = [](float value) { return glm::vec3(value); };
+  errors.unbounced_truth =
+      compare_images(mapped(grey, visibility), light.interreflection, light.sampled);
   errors.bounced_best =
       least_spread(visibility, images.albedo, light.interreflection, light.sampled);
   const std::vector<Image<float>> roughness = roughness_images(rendering);

@@ -1,12 +1,9 @@
 #include "evaluate/indirect_truths.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <random>
-#include <utility>
 
-#include "evaluate/truths.h"
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
 #include "support/progress.h"
@@ -55,25 +52,19 @@ class CachedTracer {
   Image<glm::vec3> interreflection() const {
     CacheKey key = key_;
     key.add("interreflection");
-    Image<glm::vec3> truth(points_.normal_ws.width, points_.normal_ws.height);
-    if (!cache_.read(key, truth)) {
-      truth =
-          interreflection_truth(rays_, points_, settings_, print_progress("interreflection truth"));
-      cache_.write(key, truth);
-    }
-    return truth;
+    return cached(key, [&] {
+      return interreflection_truth(rays_, points_, settings_,
+                                   print_progress("interreflection truth"));
+    });
   }
 
   Image<float> specular(const Image<float>& roughness) const {
     CacheKey key = key_;
     key.add("specular", roughness);
-    Image<float> truth(points_.normal_ws.width, points_.normal_ws.height);
-    if (!cache_.read(key, truth)) {
-      truth = specular_truth(rays_, points_, roughness, make_viewer(rendering_.camera), settings_,
-                             print_progress("specular truth"));
-      cache_.write(key, truth);
-    }
-    return truth;
+    return cached(key, [&] {
+      return specular_truth(rays_, points_, roughness, make_viewer(rendering_.camera), settings_,
+                            print_progress("specular truth"));
+    });
   }
 
   LitTruth lit(const Image<float>& roughness) const {
@@ -85,17 +76,25 @@ class CachedTracer {
     const std::uint32_t width = points_.normal_ws.width;
     const std::uint32_t height = points_.normal_ws.height;
     LitTruth truth{{width, height}, {width, height}, {width, height}, {width, height}};
-    if (!cache_.read_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
-                         truth.specular_noise)) {
+    if (!cache_.read(key, truth.diffuse, truth.specular, truth.diffuse_noise,
+                     truth.specular_noise)) {
       truth = lit_truth(rays_, points_, materials, make_viewer(rendering_.camera),
                         rendering_.light.environment, settings_, print_progress("lit truth"));
-      cache_.write_all(key, truth.diffuse, truth.specular, truth.diffuse_noise,
-                       truth.specular_noise);
+      cache_.write(key, truth.diffuse, truth.specular, truth.diffuse_noise, truth.specular_noise);
     }
     return truth;
   }
 
  private:
+  template <class Compute>
+  std::invoke_result_t<Compute> cached(const CacheKey& key, const Compute& compute) const {
+    std::invoke_result_t<Compute> truth(points_.normal_ws.width, points_.normal_ws.height);
+    if (cache_.read(key, truth)) return truth;
+    truth = compute();
+    cache_.write(key, truth);
+    return truth;
+  }
+
   const Rendering& rendering_;
   const RayScene& rays_;
   const SurfacePoints& points_;

@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "render/display.h"
 #include "support/image_io.h"
 
 namespace alcove::sample {
 namespace {
-
-Image<glm::vec3> sum(const Image<glm::vec3>& a, const Image<glm::vec3>& b) {
-  Image<glm::vec3> result = a;
-  for (std::size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] += b.pixels[i];
-  return result;
-}
 
 // The mean over the mask's pixels and the channels.
 template <class Value>
@@ -58,19 +52,15 @@ void paste(const Image<glm::vec3>& tile, std::uint32_t left, std::uint32_t top,
 // where the result is too bright, and darker where it is too dark.
 Image<glm::vec3> error_colours(const Image<glm::vec3>& result, const Image<glm::vec3>& truth,
                                double mean) {
-  Image<glm::vec3> colours = result;
-  for (std::size_t i = 0; i < colours.pixels.size(); ++i) {
-    colours.pixels[i] =
-        0.5f + (result.pixels[i] - truth.pixels[i]) / static_cast<float>(std::max(mean, 1e-9));
-  }
-  return colours;
+  const auto unit = static_cast<float>(std::max(mean, 1e-9));
+  return mapped([unit](glm::vec3 a, glm::vec3 b) { return 0.5f + (a - b) / unit; }, result, truth);
 }
 
 }  // namespace
 
 LitErrors measure_lit_errors(const Rendering& rendering, const IndirectTruths& light) {
   const LitImages& images = rendering.images.lit;
-  const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
+  const Image<glm::vec3> truth = mapped(std::plus<>(), light.lit->diffuse, light.lit->specular);
   LitErrors errors;
   const auto variance_of = [&](const Image<glm::vec3>& noise) {
     return mean_over(light.sampled, noise, [](double x) { return x * x; });
@@ -130,7 +120,7 @@ Result<void> write_lit_steps(const Rendering& rendering, const IndirectTruths& l
                              const std::filesystem::path& folder) {
   const LitImages& images = rendering.images.lit;
   const float exposure = exposure_of(rendering.light.environment);
-  const Image<glm::vec3> truth = sum(light.lit->diffuse, light.lit->specular);
+  const Image<glm::vec3> truth = mapped(std::plus<>(), light.lit->diffuse, light.lit->specular);
   const double mean = mean_over(light.sampled, truth, [](double x) { return x; });
   const Image<float> depth = linear_depth(rendering);
   const auto tile = [&](const Image<glm::vec3>& picture) {

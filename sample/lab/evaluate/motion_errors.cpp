@@ -1,6 +1,5 @@
 #include "evaluate/motion_errors.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -13,6 +13,14 @@ namespace {
 
 constexpr std::uint32_t kCompared = 3;  // frames of a path
 
+// The number of frames after which surfaces that came into view are measured. Their errors should
+// then be nearly as small as those of other surfaces.
+constexpr std::uint32_t kNewFrames = 4;  // as in kMotionErrorTitles
+
+// Surfaces that a moving object passed within this many last frames are measured separately,
+// because a history could leave a trail of the object there for that long.
+constexpr std::uint32_t kTrailFrames = 32;
+
 // A frame of the path.
 struct PathFrame {
   std::uint32_t frame = 0;
@@ -99,8 +107,7 @@ class MotionRun {
   }
 
   Result<std::unique_ptr<FrameRenderer>> create_renderer() {
-    return FrameRenderer::create(gpu_, scene_, {setup_.view.width, setup_.view.height},
-                                 setup_.view.normals, 1, setup_.view.guard_band);
+    return FrameRenderer::create(gpu_, scene_, setup_.view);
   }
 
   FrameRequest request(const OcclusionSettings& settings, std::uint32_t frame) const {

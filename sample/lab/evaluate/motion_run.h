@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "evaluate/motion_errors.h"
@@ -23,14 +22,6 @@ struct MotionSetup {
   StaticSetup view;
   TruthOptions truth;
 };
-
-// The number of frames after which surfaces that came into view are measured. Their errors should
-// then be nearly as small as those of other surfaces.
-inline constexpr std::uint32_t kNewFrames = 4;  // as in kMotionErrorTitles
-
-// Surfaces that a moving object passed within this many last frames are measured separately,
-// because a history could leave a trail of the object there for that long.
-inline constexpr std::uint32_t kTrailFrames = 32;
 
 // Root mean square of an error against the ray-traced truth.
 struct ErrorPair {
@@ -60,8 +51,8 @@ struct MotionPicture {
 // The surfaces whose errors are measured. Names and titles are in the order of the enumerators.
 enum class MotionError : std::uint8_t {
   all,
-  uncovered,    // surfaces that came into view kNewFrames ago
-  near_object,  // surfaces that a moving object passed in the last kTrailFrames
+  uncovered,    // surfaces that came into view 4 frames ago
+  near_object,  // surfaces that a moving object passed in the last 32 frames
 };
 inline constexpr std::array<const char*, 3> kMotionErrorNames{"all", "uncovered", "near_object"};
 inline constexpr std::array<const char*, 3> kMotionErrorTitles{

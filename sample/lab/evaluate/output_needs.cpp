@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "evaluate/errors.h"
@@ -63,13 +62,9 @@ Result<std::vector<std::string>> output_needs(const Scene& scene, const GBuffer&
       fmt::format("the mean unoccluded direction is {:.0f} degrees from the normal on average; "
                   "{:.0f} % more time",
                   angle.mean_degrees, 100.0 * bent_time));
-  Image<glm::vec3> bounced(visibility.width, visibility.height);
-  Image<glm::vec3> plain = bounced;
-  for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
-    plain.pixels[i] = glm::vec3(visibility.pixels[i]);
-    bounced.pixels[i] = maths::multi_bounce(visibility.pixels[i], seen.albedo.pixels[i]);
-  }
-  const ErrorSummary light = compare_images(bounced, plain, surfaces);
+  const auto grey = [](float value) { return glm::vec3(value); };
+  const ErrorSummary light = compare_images(mapped(maths::multi_bounce, visibility, seen.albedo),
+                                            mapped(grey, visibility), surfaces);
   add(light.rmse > 0.01, "multi-bounce with the albedo",
       fmt::format("it makes visibility {:.3f} brighter on average, with an RMS of {:.3f}; it takes "
                   "no pass of its own",

@@ -12,6 +12,10 @@
 namespace alcove::sample {
 namespace {
 
+// A feature is not used unless it lowers the error, or the time at the same error, by more than
+// this fraction.
+constexpr double kWorthwhile = 0.01;
+
 using Values = std::array<double, 3>;  // by Situation
 
 struct Feature {
@@ -23,7 +27,9 @@ struct Feature {
   bool RecommendationWorld::*available = nullptr;
 };
 
-static_assert(kGuardBand == 10.0);
+// The width of a guard band in percent of the image's height: about the length of a search.
+constexpr double kGuardBand = 10.0;
+
 constexpr Feature kFeatures[] = {
     {"a thickness of 0.05", [](Choice& c) { c.settings.thickness = 0.05f; }, false},
     {"a thickness of 0.5", [](Choice& c) { c.settings.thickness = 0.5f; }, false},

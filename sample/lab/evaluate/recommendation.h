@@ -18,9 +18,6 @@ namespace alcove::sample {
 enum class Situation { first, moving, standing };
 inline constexpr std::array<std::string_view, 3> kSituationNames{"first", "moving", "standing"};
 
-// The width of a guard band in percent of the image's height: about the length of a search.
-inline constexpr double kGuardBand = 10.0;
-
 // One choice of a search.
 struct Choice {
   OcclusionSettings settings;
@@ -65,10 +62,6 @@ struct FeatureEffect {
 
   std::string sentence() const;
 };
-
-// A feature is not used unless it lowers the error, or the time at the same error, by more than
-// this fraction.
-inline constexpr double kWorthwhile = 0.01;
 
 struct Recommendation {
   std::vector<FeatureEffect> features;

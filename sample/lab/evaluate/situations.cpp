@@ -81,16 +81,15 @@ Result<SituationErrors> SituationErrors::create(const Session& session, const St
 Result<FrameRenderer*> SituationErrors::renderer(double guard_band) {
   std::unique_ptr<FrameRenderer>& renderer = renderers_[guard_band];
   if (!renderer) {
-    const VkExtent2D size{setup_.width, setup_.height};
-    const std::uint32_t band = guard_band_pixels(guard_band, size.height);
+    ViewRequest view = setup_;
+    view.guard_band = guard_band;
     // All choices show the same views: those of the orbit, and the static one. Their g-buffers are
     // kept if they are small.
     constexpr std::size_t kMostPixels = 4'000'000;
     const std::size_t views = kMovingFrames + 1;
-    const bool kept = views * size.width * size.height <= kMostPixels;
+    const bool kept = views * view.width * view.height <= kMostPixels;
     ALCOVE_TRY(renderer,
-               FrameRenderer::create(*session_->gpu, session_->scene, size, setup_.normals,
-                                     kept ? views : 1, VkExtent2D{band, band}));
+               FrameRenderer::create(*session_->gpu, session_->scene, view, kept ? views : 1));
   }
   return renderer.get();
 }
@@ -156,12 +155,10 @@ SettingTimes measured_times(const Session& session, const StaticSetup& view, Clo
   return [&session, view, clock, scale](const Choice& choice) -> Result<std::array<double, 3>> {
     constexpr std::uint32_t kWarmUp = 4;  // frames that compile shaders
     constexpr std::uint32_t kTimed = 11;
-    const std::uint32_t band = guard_band_pixels(choice.guard_band, view.height);
     StaticSetup setup = view;
+    setup.guard_band = choice.guard_band;
     setup.frames = kWarmUp + kTimed;
-    ALCOVE_TRY(const auto renderer,
-               FrameRenderer::create(*session.gpu, session.scene, {setup.width, setup.height},
-                                     setup.normals, 1, VkExtent2D{band, band}));
+    ALCOVE_TRY(const auto renderer, FrameRenderer::create(*session.gpu, session.scene, setup));
     std::array<double, 3> medians{};
     for (const Situation situation : {Situation::first, Situation::moving, Situation::standing}) {
       setup.orbit = situation == Situation::moving ? kOrbit : 0.0f;

@@ -29,9 +29,9 @@ Result<FrameImages> draw_frames(FrameRenderer& renderer, const StaticSetup& setu
 }
 
 Result<FrameImages> draw_static(Gpu& gpu, const Scene& scene, const StaticSetup& setup,
-                                const OcclusionSettings& settings) {
-  ALCOVE_TRY(const auto renderer, FrameRenderer::create(gpu, scene, {setup.width, setup.height},
-                                                        setup.normals, 1, setup.guard_band));
+                                const OcclusionSettings& settings,
+                                std::optional<VkExtent2D> guard_band) {
+  ALCOVE_TRY(const auto renderer, FrameRenderer::create(gpu, scene, setup, 1, guard_band));
   return draw_frames(*renderer, setup, settings);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 
 #include "reference/surface_points.h"
 #include "reference/truth_cache.h"
@@ -24,10 +23,9 @@ TruthCache cache_of(const TruthOptions& options) {
 
 Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& options) {
   const Image<float> depth = linear_depth(frame.camera, frame.depth_ndc);
+  const auto is_surface = [](float z) { return static_cast<std::uint8_t>(std::isfinite(z)); };
   Truths truths{{{depth.width, depth.height}, {depth.width, depth.height}},
-                {depth.width, depth.height}};
-  for (std::size_t i = 0; i < depth.pixels.size(); ++i)
-    truths.surfaces.pixels[i] = std::isfinite(depth.pixels[i]) ? 1 : 0;
+                mapped(is_surface, depth)};
   if (std::ranges::find(truths.surfaces.pixels, 1) == truths.surfaces.pixels.end()) {
     return tl::unexpected<std::string>(
         "the view shows nothing but sky: turn it with --eye and --target, widen --near and --far, "
@@ -38,11 +36,11 @@ Result<Truths> compute_truths(const TruthFrame& frame, const TruthOptions& optio
   key.add("scene truth", kTruthVersion, frame.scene, frame.camera, settings.radius, settings.spp,
           depth, frame.normal_ws);
   const TruthCache cache = cache_of(options);
-  if (cache.read_all(key, truths.scene.visibility, truths.scene.bent_normal_ws)) return truths;
+  if (cache.read(key, truths.scene.visibility, truths.scene.bent_normal_ws)) return truths;
   ALCOVE_TRY(const auto rays, RayScene::create(frame.scene));
   truths.scene = occlusion_truth(rays, surface_points(rays, frame.camera, frame.normal_ws, depth),
                                  settings, print_progress("scene truth"));
-  cache.write_all(key, truths.scene.visibility, truths.scene.bent_normal_ws);
+  cache.write(key, truths.scene.visibility, truths.scene.bent_normal_ws);
   return truths;
 }
 
@@ -54,10 +52,10 @@ HeightFieldTruth compute_height_field_truth(const TruthFrame& frame, const Truth
           depth, frame.normal_ws);
   const TruthCache cache = cache_of(options);
   HeightFieldTruth truth{{depth.width, depth.height}, {depth.width, depth.height}};
-  if (!cache.read_all(key, truth.visibility, truth.bent_normal_ws)) {
+  if (!cache.read(key, truth.visibility, truth.bent_normal_ws)) {
     truth = height_field_truth(depth, frame.normal_ws, frame.camera, settings,
                                print_progress("height-field truth"));
-    cache.write_all(key, truth.visibility, truth.bent_normal_ws);
+    cache.write(key, truth.visibility, truth.bent_normal_ws);
   }
   return truth;
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "reference/height_field_truth.h"
 #include "reference/truth.h"
 #include "scene/scene.h"

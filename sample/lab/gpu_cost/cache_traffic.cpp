@@ -1,10 +1,7 @@
 #include "gpu_cost/cache_traffic.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace alcove::sample {

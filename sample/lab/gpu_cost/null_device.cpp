@@ -201,47 +201,7 @@ bool create_pipeline(VkDevice device, const AlcoveWorkDispatch& dispatch, VkPipe
          VK_SUCCESS;
 }
 
-}  // namespace
-
-Result<NullDevice> create_null_device(std::string_view family) {
-  // Parts of one family share a device, and with it the pipelines that it has compiled.
-  static std::map<std::string, NullDevice, std::less<>> known;
-  if (const auto found = known.find(family); found != known.end()) return found->second;
-  const auto manifest = radv_manifest();
-  if (!manifest) {
-    return Failure(
-        "Mesa's AMD driver (RADV) is not installed; on Debian, install the package "
-        "mesa-vulkan-drivers.");
-  }
-  // Vulkan loaders read VK_DRIVER_FILES; loaders before 1.3.207 read VK_ICD_FILENAMES instead.
-  const ScopedVariable files("VK_DRIVER_FILES", *manifest);
-  const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
-  const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));
-  const SilentStandardError silent;  // RADV warns that it does not conform
-  NullDevice null_device;
-  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                      .pApplicationName = "alcove",
-                                      .apiVersion = VK_API_VERSION_1_3};
-  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                  .pApplicationInfo = &application};
-  std::uint32_t count = 1;
-  if (vkCreateInstance(&info, nullptr, &null_device.instance) != VK_SUCCESS ||
-      vkEnumeratePhysicalDevices(null_device.instance, &count, &null_device.physical_device) <
-          VK_SUCCESS ||
-      count == 0 || !has_executable_properties(null_device.physical_device) ||
-      create_device(null_device) != VK_SUCCESS) {
-    return Failure("Mesa's AMD driver (RADV, " + *manifest + ") has no device of the family " +
-                   std::string(family) + ".");
-  }
-  VkPhysicalDeviceDriverProperties driver{.sType =
-                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                         .pNext = &driver};
-  vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
-  null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
-  return known[std::string(family)] = null_device;
-}
-
+// Reads what the compiler kept of a pipeline.
 Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline) {
   const auto load = [device](const char* name) { return vkGetDeviceProcAddr(device, name); };
   const auto get_properties = reinterpret_cast<PFN_vkGetPipelineExecutablePropertiesKHR>(
@@ -281,6 +241,47 @@ Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline
   for (std::uint32_t i = 0; i < count; ++i)
     shader.texts[texts[i].name] = contents[i].substr(0, contents[i].find('\0'));
   return shader;
+}
+
+}  // namespace
+
+Result<NullDevice> create_null_device(std::string_view family) {
+  // Parts of one family share a device, and with it the pipelines that it has compiled.
+  static std::map<std::string, NullDevice, std::less<>> known;
+  if (const auto found = known.find(family); found != known.end()) return found->second;
+  const auto manifest = radv_manifest();
+  if (!manifest) {
+    return Failure(
+        "Mesa's AMD driver (RADV) is not installed; on Debian, install the package "
+        "mesa-vulkan-drivers.");
+  }
+  // Vulkan loaders read VK_DRIVER_FILES; loaders before 1.3.207 read VK_ICD_FILENAMES instead.
+  const ScopedVariable files("VK_DRIVER_FILES", *manifest);
+  const ScopedVariable old_files("VK_ICD_FILENAMES", *manifest);
+  const ScopedVariable forced("RADV_FORCE_FAMILY", std::string(family));
+  const SilentStandardError silent;  // RADV warns that it does not conform
+  NullDevice null_device;
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                      .pApplicationName = "alcove",
+                                      .apiVersion = VK_API_VERSION_1_3};
+  const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                  .pApplicationInfo = &application};
+  std::uint32_t count = 1;
+  if (vkCreateInstance(&info, nullptr, &null_device.instance) != VK_SUCCESS ||
+      vkEnumeratePhysicalDevices(null_device.instance, &count, &null_device.physical_device) <
+          VK_SUCCESS ||
+      count == 0 || !has_executable_properties(null_device.physical_device) ||
+      create_device(null_device) != VK_SUCCESS) {
+    return Failure("Mesa's AMD driver (RADV, " + *manifest + ") has no device of the family " +
+                   std::string(family) + ".");
+  }
+  VkPhysicalDeviceDriverProperties driver{.sType =
+                                              VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         .pNext = &driver};
+  vkGetPhysicalDeviceProperties2(null_device.physical_device, &properties);
+  null_device.compiler = std::string(driver.driverName) + ", " + driver.driverInfo;
+  return known[std::string(family)] = null_device;
 }
 
 Result<const CompiledShader*> compile_dispatch(const NullDevice& device,

@@ -35,12 +35,6 @@ struct CompiledShader {
   std::map<std::string, std::string> texts;  // the compiler's representations, by name
 };
 
-// Reads what the compiler kept of a pipeline that was created with
-// VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR and
-// VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR, on any device with
-// VK_KHR_pipeline_executable_properties.
-[[nodiscard]] Result<CompiledShader> read_compiled_shader(VkDevice device, VkPipeline pipeline);
-
 // Compiles the pipeline of a dispatch. The result is kept until the process ends. Error: the driver
 // rejects the pipeline, or reports nothing about it.
 [[nodiscard]] Result<const CompiledShader*> compile_dispatch(const NullDevice& device,

@@ -6,6 +6,8 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "reference/sampling.h"
+
 namespace alcove::sample {
 namespace {
 
@@ -217,13 +219,6 @@ int steps_within(const HeightField& field, bool along_x, const glm::vec3& centre
   return static_cast<int>(std::min(std::ceil(extent), static_cast<float>(most)));
 }
 
-// Two directions that form a right-handed basis with the unit vector `v`.
-std::array<glm::vec3, 2> across(const glm::vec3& v) {
-  const glm::vec3 helper = std::abs(v.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  const glm::vec3 a = glm::normalize(glm::cross(helper, v));
-  return {a, glm::cross(v, a)};
-}
-
 // The image-space direction, in pixels and not normalised, of a view-space direction at a point.
 glm::vec2 image_direction(const HeightField& field, const glm::vec3& centre,
                           const glm::vec3& direction) {
@@ -274,9 +269,9 @@ FieldPoint field_point(const HeightField& field, uint32_t x, uint32_t y, float r
   point.y = y;
   point.centre = view_position(field, middle, value);
   point.view = field.orthographic ? glm::vec3(0, 0, 1) : -glm::normalize(point.centre);
-  const auto [right, up] = across(point.view);
-  point.right = right;
-  point.up = up;
+  const Basis basis = make_basis(point.view);
+  point.right = basis.x;
+  point.up = basis.y;
   point.radius = radius;
   point.steps_x = steps_within(field, true, point.centre, radius);
   point.steps_y = steps_within(field, false, point.centre, radius);

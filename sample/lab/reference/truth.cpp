@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -31,54 +30,38 @@ void store_hit(const Scene& scene, const Hit& hit, const Ray& ray, const glm::ve
   out.material.pixels[pixel] = hit.material;
 }
 
-struct OpenRays {
-  uint32_t count = 0;
-  glm::vec3 sum{0.0f};
+// The weighted rays of a point.
+struct Rays {
+  double open = 0.0, all = 0.0;  // sums of weights
+  glm::vec3 open_direction{0.0f};
 };
 
-OpenRays trace_hemisphere(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
-                          const TruthSettings& settings, uint64_t seed) {
-  OpenRays open;
-  std::array<glm::vec3, kPacket> directions;
-  for (uint32_t first = 0; first < settings.spp; first += kPacket) {
-    const uint32_t count = std::min(kPacket, settings.spp - first);
-    for (uint32_t i = 0; i < count; ++i)
-      directions[i] = basis.to_world(cosine_direction(r2_point(first + i, seed)));
-    const uint32_t blocked =
-        scene.blocked(origin, std::span(directions).first(count), settings.radius);
-    for (uint32_t i = 0; i < count; ++i) {
-      if (blocked >> i & 1u) continue;
-      ++open.count;
-      open.sum += directions[i];
-    }
-  }
-  return open;
-}
-
-// The visible fraction of a GGX lobe.
-float trace_lobe(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
-                 const LobeSampler& lobe, const TruthSettings& settings, uint64_t seed) {
-  double open = 0.0, all = 0.0;
+// Traces the rays that `sample` chooses by a point of the unit square, unless their weight is 0.
+template <class Sample>
+Rays trace_rays(const RayScene& scene, const glm::vec3& origin, const Basis& basis,
+                const Sample& sample, const TruthSettings& settings, uint64_t seed) {
+  Rays rays;
   std::array<glm::vec3, kPacket> directions;
   std::array<float, kPacket> weights{};
   for (uint32_t first = 0; first < settings.spp; first += kPacket) {
-    const uint32_t most = std::min(kPacket, settings.spp - first);
     uint32_t count = 0;
-    for (uint32_t i = 0; i < most; ++i) {
-      const LobeSample light = lobe.at(r2_point(first + i, seed));
-      if (light.weight <= 0.0f) continue;
-      weights[count] = light.weight;
-      directions[count++] = basis.to_world(light.direction);
+    for (uint32_t i = first; i < std::min(first + kPacket, settings.spp); ++i) {
+      const LobeSample ray = sample(r2_point(i, seed));
+      if (ray.weight <= 0.0f) continue;
+      weights[count] = ray.weight;
+      directions[count++] = basis.to_world(ray.direction);
     }
     if (count == 0) continue;
     const uint32_t blocked =
         scene.blocked(origin, std::span(directions).first(count), settings.radius);
     for (uint32_t i = 0; i < count; ++i) {
-      all += weights[i];
-      if (!(blocked >> i & 1u)) open += weights[i];
+      rays.all += weights[i];
+      if (blocked >> i & 1u) continue;
+      rays.open += weights[i];
+      rays.open_direction += directions[i];
     }
   }
-  return all > 0.0 ? static_cast<float>(open / all) : 1.0f;
+  return rays;
 }
 
 }  // namespace
@@ -119,12 +102,12 @@ OcclusionTruth occlusion_truth(const RayScene& scene, const SurfacePoints& point
   OcclusionTruth out{{width, height, 1.0f}, {width, height}};
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const glm::vec3& normal = points.normal_ws.pixels[pixel];
-    const OpenRays open = trace_hemisphere(scene, ray_start(scene, points, pixel),
-                                           make_basis(normal), settings, seed);
-    const float length = glm::length(open.sum);
-    out.visibility.pixels[pixel] =
-        static_cast<float>(open.count) / static_cast<float>(settings.spp);
-    out.bent_normal_ws.pixels[pixel] = length > 1e-6f ? open.sum / length : normal;
+    const auto sample = [](const glm::vec2& u) { return LobeSample{cosine_direction(u), 1.0f, 0}; };
+    const Rays rays = trace_rays(scene, ray_start(scene, points, pixel), make_basis(normal), sample,
+                                 settings, seed);
+    const float length = glm::length(rays.open_direction);
+    out.visibility.pixels[pixel] = static_cast<float>(rays.open) / static_cast<float>(settings.spp);
+    out.bent_normal_ws.pixels[pixel] = length > 1e-6f ? rays.open_direction / length : normal;
   });
   return out;
 }
@@ -147,9 +130,11 @@ Image<float> specular_truth(const RayScene& scene, const SurfacePoints& points,
   for_each_surface(points, settings.seed, progress, [&](size_t pixel, uint64_t seed) {
     const Basis basis = make_basis(points.normal_ws.pixels[pixel]);
     const glm::vec3 view = view_from(viewer, points.position_ws.pixels[pixel]);
-    out.pixels[pixel] =
-        trace_lobe(scene, ray_start(scene, points, pixel), basis,
-                   LobeSampler(basis.to_local(view), roughness.pixels[pixel]), settings, seed);
+    const LobeSampler lobe(basis.to_local(view), roughness.pixels[pixel]);
+    const Rays rays = trace_rays(
+        scene, ray_start(scene, points, pixel), basis,
+        [&](const glm::vec2& u) { return lobe.at(u); }, settings, seed);
+    out.pixels[pixel] = rays.all > 0.0 ? static_cast<float>(rays.open / rays.all) : 1.0f;
   });
   return out;
 }

@@ -1,13 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "scene/camera.h"
 #include "scene/ray_scene.h"
-#include "scene/scene.h"
 #include "support/glm.h"
 #include "support/image.h"
 #include "support/progress.h"

@@ -62,27 +62,21 @@ class TruthCache {
   [[nodiscard]] std::optional<std::vector<float>> read(const CacheKey& key, size_t count) const;
   void write(const CacheKey& key, std::span<const float> values) const;
 
-  template <class T>
-  [[nodiscard]] bool read(const CacheKey& key, Image<T>& image) const {
-    auto values = read(key, as_floats(image).size());
-    if (!values) return false;
-    std::memcpy(image.pixels.data(), values->data(), values->size() * sizeof(float));
-    return true;
-  }
-  template <class T>
-  void write(const CacheKey& key, const Image<T>& image) const {
-    write(key, as_floats(image));
-  }
-  // Reads or writes several images, of which all but the first have keys derived from `key`.
+  // Reads or writes images, of which all but the first have keys derived from `key`.
   template <class... T>
-  [[nodiscard]] bool read_all(const CacheKey& key, Image<T>&... images) const {
+  [[nodiscard]] bool read(const CacheKey& key, Image<T>&... images) const {
     std::uint32_t part = 0;
-    return (read(part_key(key, part++), images) && ...);
+    const auto read_one = [&](auto& image) {
+      const auto values = read(part_key(key, part++), as_floats(image).size());
+      if (values) std::memcpy(image.pixels.data(), values->data(), values->size() * sizeof(float));
+      return values.has_value();
+    };
+    return (read_one(images) && ...);
   }
   template <class... T>
-  void write_all(const CacheKey& key, const Image<T>&... images) const {
+  void write(const CacheKey& key, const Image<T>&... images) const {
     std::uint32_t part = 0;
-    (write(part_key(key, part++), images), ...);
+    (write(part_key(key, part++), as_floats(images)), ...);
   }
 
  private:
