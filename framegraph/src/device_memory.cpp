@@ -6,11 +6,11 @@ namespace {
 // Returns the index of the memory type that suits a request best, or kNone if no type suits it.
 std::uint32_t memory_type(const VkPhysicalDeviceMemoryProperties& memory,
                           const MemoryRequest& request) {
-  for (const VkMemoryPropertyFlags wanted :
+  for (const VkMemoryPropertyFlags properties :
        {request.required | request.preferred, request.required})
     for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type)
       if ((request.requirements.memoryTypeBits >> type & 1u) != 0 &&
-          (memory.memoryTypes[type].propertyFlags & wanted) == wanted)
+          (memory.memoryTypes[type].propertyFlags & properties) == properties)
         return type;
   return kNone;
 }
