@@ -58,7 +58,9 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   SearchLine search_line = make_search_line(surface, direction);
   vec2 border = border_offsets(surface, search_line);
   SliceSum sum = no_sum(surface);
-  [[dont_unroll]] for (uint i = 0u; i < 2u; ++i) {
+  // With `for`, this loop and that over slices need up to 128 registers instead of 80 (RDNA2).
+  uint i = 0u;
+  [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
     HalfSlice half_slice = make_half_slice(surface, search_line, slice, side, border, step_offset);
     if (kHorizons)
@@ -67,7 +69,10 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
       add_connected(sum, half_slice, slice);
     search_line = opposite(search_line);
     border = border.yx;
+    ++i;
   }
+  while (i < 2u)
+    ;
   SliceResult result = kNoResult;
   if (kBentNormal) {
     vec3 part = direction * sum.bent.x + surface.view * sum.bent.y;
@@ -150,10 +155,14 @@ SearchResult search_pixel(ivec2 pixel, float inverse_depth, SliceNoise noise) {
     // Without occluders, the mean of a slice over all directions is 1.
     sum.raw_occlusion = RawOcclusion(float(kSliceCount), float(kSliceCount));
   } else {
-    [[dont_unroll]] for (uint i = 0u; i < kSliceCount; ++i) {
+    uint i = 0u;
+    [[dont_unroll]] do {
       add_slice(sum, surface, noise, i);
       if (kSliceCount == 1u) break;  // compilers then remove the loop
+      ++i;
     }
+    while (i < kSliceCount)
+      ;
   }
   sum = fade_unresolved(sum, unresolved_occlusion(depth_step_length(surface), parameters.radius));
   float mean = 1.0 / float(kSliceCount);
