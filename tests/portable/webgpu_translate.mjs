@@ -56,7 +56,10 @@ export function translate(folder, shader, constants, formatOf) {
       { input: freeze(folder, shader, constants), encoding: 'utf8', maxBuffer: 2 ** 26 });
   const module = naga.parseSpirv(new Uint8Array(execFileSync('spirv-as',
       ['--target-env', 'vulkan1.2', '-o', '-', '-'], { input: writeFormats(text, formatOf) })));
-  // A loop that always ends by `break` becomes a block, because SwiftShader takes minutes for the former.
-  return naga.writeWgsl(module, naga.validate(module), {})
-      .replace(/^( *)loop \{\n((?:\1 .*\n|\n)*?)\1 {4}break;\n\1\}$/gm, '$1{\n$2$1}');
+  // A loop whose only exit is a `break` at its end becomes a block: SwiftShader takes minutes for the former.
+  const loops = /^( *)loop \{\n((?:\1 .*\n|\n)*?)\1\}$/gm;
+  return naga.writeWgsl(module, naga.validate(module), {}).replace(loops, (loop, indent, body) => {
+    const once = body.endsWith(`${indent}    break;\n`) ? body.slice(0, -`${indent}    break;\n`.length) : 'break';
+    return /\b(break|continue|continuing)\b/.test(once.replace(loops, '')) ? loop : `${indent}{\n${once}${indent}}`;
+  });
 }
