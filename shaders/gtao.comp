@@ -58,9 +58,8 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   SearchLine search_line = make_search_line(surface, direction);
   vec2 border = border_offsets(surface, search_line);
   SliceSum sum = no_sum(surface);
-  // The loops of the search are `do`. With `for`, this one and that over slices need up to 128
-  // registers instead of 80 (RDNA2), and llvmpipe draws another picture from the translated GLSL.
-  // With `while` in the loops over samples and sectors, SwiftShader draws another one.
+  // With `for`, this loop and that over slices need up to 128 registers instead of 80 (RDNA2), and
+  // llvmpipe draws another picture from the translated GLSL.
   uint i = 0u;
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;

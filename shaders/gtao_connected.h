@@ -217,12 +217,12 @@ Occluders find_in_layer(HalfSlice half_slice, float sectors, uint layer) {
   }
   uint last = half_slice.steps - 1u;
   uint k = 1u + rest;
-  if (k < last) do {
-      [[unroll]] for (uint i = 0u; i < kUnrolled; ++i) {
-        pass_sample(state, here, half_slice, sectors, layer, k + i);
-      }
-      k += kUnrolled;
-    } while (k < last);
+  while (k < last) {
+    [[unroll]] for (uint i = 0u; i < kUnrolled; ++i) {
+      pass_sample(state, here, half_slice, sectors, layer, k + i);
+    }
+    k += kUnrolled;
+  }
   // No sample follows the last one, so it is connected only if there is no discontinuity before it.
   add_sample(state, sectors, layer, last, here, !is_discontinuous(state.discontinuity),
              edge_distance(state));

@@ -130,12 +130,12 @@ ALCOVE_INLINE float visible_lobe(HalfLobe lobe, float per_diamond_angle, uint oc
   float sum = lobe.whole * (occluded == 0u ? 1.0f : ((occluded >> 31u) != 0u ? 0.0f : keep));
   uint ends = occluded ^ (occluded << 1u);
   float weight = 1.0f;
-  if (ends != 0u) do {
-      vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
-      sum += weight * lobe_light_arc(lobe, light);
-      weight = weight > 0.0f ? -keep : keep;
-      ends &= ends - 1u;
-    } while (ends != 0u);
+  while (ends != 0u) {
+    vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
+    sum += weight * lobe_light_arc(lobe, light);
+    weight = weight > 0.0f ? -keep : keep;
+    ends &= ends - 1u;
+  }
   return max(sum, 0.0f);
 }
 

@@ -133,12 +133,12 @@ ALCOVE_INLINE VisiblePart visible_part(Slice s, float side, float per_diamond_an
   sum = add_part(sum, weight, s, side, tangent_light(s, side), bent);
   uint ends = occluded ^ (occluded << 1u);
   weight = 1.0f;
-  if (ends != 0u) do {
-      vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
-      sum = add_part(sum, weight, s, side, light, bent);
-      weight = weight > 0.0f ? -keep : keep;
-      ends &= ends - 1u;
-    } while (ends != 0u);
+  while (ends != 0u) {
+    vec2 light = diamond_angle_light(float(lowest_bit(ends)) / per_diamond_angle);
+    sum = add_part(sum, weight, s, side, light, bent);
+    weight = weight > 0.0f ? -keep : keep;
+    ends &= ends - 1u;
+  }
   return sum;
 }
 
