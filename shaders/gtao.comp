@@ -59,7 +59,7 @@ SliceResult search_slice(Surface surface, vec3 direction, float step_offset) {
   vec2 border = border_offsets(surface, search_line);
   SliceSum sum = no_sum(surface);
   // With `for`, this loop and that over slices need up to 128 registers instead of 80 (RDNA2), and
-  // llvmpipe draws another picture from the translated GLSL.
+  // llvmpipe draws another picture from the translated GLSL of the latter.
   uint i = 0u;
   [[dont_unroll]] do {
     float side = i == 0u ? 1.0 : -1.0;
