@@ -240,7 +240,7 @@ class Table {
   void flag(std::uint32_t commands, const char* name, Target& target, const std::string& help,
             bool value = true) {
     if ((commands & command_) == 0) return;
-    const auto store = [name, &target, value] {
+    const auto store = [=, &target] {
       if constexpr (!std::is_same_v<Target, bool>)
         if (target == !value) throw Mistake{std::string(name) + ": give it or its opposite"};
       target = value;
