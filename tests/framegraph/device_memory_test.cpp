@@ -14,15 +14,14 @@ constexpr VkMemoryPropertyFlags kVisible =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 constexpr VkMemoryPropertyFlags kTypes[] = {0, kVisible, kLocal, kLocal | kVisible};
 
-// What the functions below have done, and what mapping returns.
-std::uint32_t used_type = kNone;
-int allocated = 0;
-VkResult mapping = VK_SUCCESS;
+std::uint32_t used_type = kNone;  // of the last allocation
+int allocated = 0;                // ranges that are not freed
+VkResult mapping = VK_SUCCESS;    // result of map()
 
-void VKAPI_CALL get_types(VkPhysicalDevice /*device*/, VkPhysicalDeviceMemoryProperties* found) {
-  found->memoryTypeCount = std::size(kTypes);
+void VKAPI_CALL get_types(VkPhysicalDevice /*device*/, VkPhysicalDeviceMemoryProperties* memory) {
+  memory->memoryTypeCount = std::size(kTypes);
   for (std::uint32_t i = 0; i < std::size(kTypes); ++i)
-    found->memoryTypes[i].propertyFlags = kTypes[i];
+    memory->memoryTypes[i].propertyFlags = kTypes[i];
 }
 VkResult VKAPI_CALL allocate(VkDevice /*device*/, const VkMemoryAllocateInfo* info,
                              const VkAllocationCallbacks* /*callbacks*/, VkDeviceMemory* memory) {
